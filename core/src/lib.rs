@@ -16,6 +16,7 @@
 extern crate std;
 
 pub mod ahead;
+mod cast;
 pub mod clearance;
 pub mod drive;
 mod error;
@@ -37,6 +38,7 @@ pub mod slide;
 pub mod system;
 pub mod table;
 
+pub use cast::Cast;
 pub use error::ParameterError;
 pub use nalgebra::{SMatrix, SVector, Vector2, Vector3};
 pub use scalar::Scalar;

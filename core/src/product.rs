@@ -4,9 +4,9 @@
 //! product, and lanes, whose instructions the library does not know of, many times as long. The sums have the library's order,
 //! so that the bits are the same.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3};
 
-use crate::{Scalar, Vector3};
+use crate::{SMatrix, SVector, Scalar, Vector2, Vector3};
 
 /// The columns of `m`.
 #[inline(always)]
@@ -55,6 +55,28 @@ pub(crate) fn times<S: Scalar>(m: &Matrix3<S>, v: &Vector3<S>) -> Vector3<S> {
     Vector3::new(row(x.x, y.x, z.x), row(x.y, y.y, z.y), row(x.z, y.z, z.z))
 }
 
+/// `m` · `v` of any size.
+#[inline(always)]
+pub(crate) fn applied<S: Scalar, const R: usize, const C: usize>(
+    m: &SMatrix<S, R, C>,
+    v: &SVector<S, C>,
+) -> SVector<S, R> {
+    let mut sum = SVector::<S, R>::zeros();
+    for (k, (column, x)) in m.data.0.iter().zip(&v.data.0[0]).enumerate() {
+        for (sum, entry) in sum.data.0[0].iter_mut().zip(column) {
+            let product = *entry * *x;
+            *sum = if k == 0 { product } else { *sum + product };
+        }
+    }
+    sum
+}
+
+/// `a` · `b`ᵀ in a plane.
+#[inline(always)]
+pub(crate) fn outer_in_plane<S: Scalar>(a: &Vector2<S>, b: &Vector2<S>) -> Matrix2<S> {
+    Matrix2::new(a.x * b.x, a.x * b.y, a.y * b.x, a.y * b.y)
+}
+
 /// `m`ᵀ · `v`.
 #[inline(always)]
 pub(crate) fn transposed_times<S: Scalar>(m: &Matrix3<S>, v: &Vector3<S>) -> Vector3<S> {
@@ -91,8 +113,8 @@ pub(crate) fn mapped_entries<S: Scalar, T: Scalar>(m: &Matrix3<S>, number: impl 
 
 #[cfg(test)]
 mod tests {
-    use super::{cross, dot, outer, product, times, transposed_times};
-    use crate::Vector3;
+    use super::{applied, cross, dot, outer, outer_in_plane, product, times, transposed_times};
+    use crate::{SMatrix, SVector, Vector2, Vector3};
     use nalgebra::Matrix3;
 
     #[test]
@@ -111,6 +133,12 @@ mod tests {
             assert_eq!(transposed_times(&m, &a), m.tr_mul(&a));
             assert_eq!(product(&m, &n), m * n);
             assert_eq!(outer(&a, &b), a * b.transpose());
+            let [c, d] = [(); 2].map(|()| Vector2::from_fn(|_, _| next()));
+            assert_eq!(outer_in_plane(&c, &d), c * d.transpose());
+            let (m, v) = (SMatrix::<f32, 2, 4>::from_fn(|_, _| next()), SVector::<f32, 4>::from_fn(|_, _| next()));
+            assert_eq!(applied(&m, &v), m * v);
+            let (m, v) = (SMatrix::<f32, 7, 7>::from_fn(|_, _| next()), SVector::<f32, 7>::from_fn(|_, _| next()));
+            assert_eq!(applied(&m, &v), m * v);
         }
     }
 }

@@ -14,6 +14,8 @@ pub struct Piece<S> {
     pub coefficients: [S; 4],
 }
 
+crate::cast::cast!([] [] Piece: Piece<f64> => T Piece<T> { start, coefficients });
+
 impl<S: Scalar> Piece<S> {
     /// The commanded speed (m/s, rad/s) at time `t` (s).
     #[inline(always)]
@@ -49,21 +51,7 @@ pub trait Command<S>: Clone {
 impl<S: Scalar, const N: usize> Command<S> for [Piece<S>; N] {
     #[inline(always)]
     fn piece(&self, t: S) -> Piece<S> {
-        let (zero, one) = (S::zero(), S::one());
-        let mut found = Piece { start: zero, coefficients: [zero; 4] };
-        // A sum with weights of 0 and 1, which is exact: of one question for many numbers compilers make a branch.
-        let mut has_begun = self.map(|piece| piece.start.select_gt(t, zero, one)).into_iter();
-        let mut begun = has_begun.next().unwrap_or(zero);
-        for piece in self {
-            let next = has_begun.next().unwrap_or(zero);
-            let weight = begun - next;
-            begun = next;
-            found.start += weight * piece.start;
-            for (found, coefficient) in found.coefficients.iter_mut().zip(piece.coefficients) {
-                *found += weight * coefficient;
-            }
-        }
-        found
+        piece_among(self, t)
     }
 
     fn checked(self) -> Result<Self, ParameterError<S>>
@@ -72,6 +60,26 @@ impl<S: Scalar, const N: usize> Command<S> for [Piece<S>; N] {
     {
         check_pieces(&self).map(|()| self)
     }
+}
+
+/// That of the `pieces` which holds at time `t` (s), without a branch.
+#[inline(always)]
+pub fn piece_among<S: Scalar>(pieces: &[Piece<S>], t: S) -> Piece<S> {
+    let (zero, one) = (S::zero(), S::one());
+    let mut found = Piece { start: zero, coefficients: [zero; 4] };
+    // A sum with weights of 0 and 1, which is exact: of one question for many numbers compilers make a branch.
+    let mut has_begun = pieces.iter().map(|piece| piece.start.select_gt(t, zero, one));
+    let mut begun = has_begun.next().unwrap_or(zero);
+    for piece in pieces {
+        let next = has_begun.next().unwrap_or(zero);
+        let weight = begun - next;
+        begun = next;
+        found.start += weight * piece.start;
+        for (found, coefficient) in found.coefficients.iter_mut().zip(piece.coefficients) {
+            *found += weight * coefficient;
+        }
+    }
+    found
 }
 
 /// Whether the `pieces` can be followed.
@@ -98,6 +106,8 @@ pub struct Commanded<S, C> {
     /// The commanded speed.
     pub command: C,
 }
+
+crate::cast::cast!([C] [] Commanded: Commanded<f64, C> => T Commanded<T, C::Of<T>> { gain, command });
 
 impl<S: Scalar, C: Command<S>> Push<S> for Commanded<S, C> {
     fn checked(self) -> Result<Self, ParameterError<S>>

@@ -22,6 +22,8 @@ pub struct Drive<S> {
     pub point_b: Vector3<S>,
 }
 
+crate::cast::cast!([] [] Drive: Drive<f64> => T Drive<T> { gain, ramp_start, ramp_end, speed, point_b });
+
 impl<S: Scalar + PartialOrd> Drive<S> {
     /// This drive, if its parameters can be stepped without failing.
     ///

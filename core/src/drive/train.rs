@@ -18,6 +18,8 @@ pub struct TrainData<S> {
     pub offset: S,
 }
 
+crate::cast::cast!([] [] TrainData: TrainData<f64> => T TrainData<T> { limit, coulomb, stick_band, viscous, offset });
+
 /// A `controller` whose effort is limited, on a drive train with friction:
 /// force = clamp(effort, ± limit) − coulomb·w(3 − w²)/2 − viscous·v − offset, with w = v/stick band held within ± 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +29,8 @@ pub struct Train<S, P> {
     /// Friction with a coefficient of 1.
     band: Regularised<S>,
 }
+
+crate::cast::cast!([P] [] Train: Train<f64, P> => T Train<T, P::Of<T>> { controller, data, band });
 
 impl<S: Scalar> TrainData<S> {
     /// What the motor gives (N) of the `effort` (N) that its controller asks for.

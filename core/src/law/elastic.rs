@@ -19,6 +19,8 @@ pub struct Linear<S> {
     stiffness: S,
 }
 
+crate::cast::cast!([] [] Linear: Linear<f64> => T Linear<T> { stiffness });
+
 impl<S: Scalar + PartialOrd> Linear<S> {
     /// A spring of `stiffness` k (N/m).
     ///
@@ -45,6 +47,8 @@ impl<S: Scalar> Elastic<S> for Linear<S> {
 pub struct ThreeHalves<S> {
     stiffness: S,
 }
+
+crate::cast::cast!([] [] ThreeHalves: ThreeHalves<f64> => T ThreeHalves<T> { stiffness });
 
 impl<S: Scalar + PartialOrd> ThreeHalves<S> {
     /// A spring of `stiffness` k (N/m^1.5).
@@ -74,6 +78,8 @@ pub struct Power<S> {
     stiffness: S,
     exponent: S,
 }
+
+crate::cast::cast!([] [] Power: Power<f64> => T Power<T> { stiffness, exponent });
 
 impl<S: Scalar + PartialOrd> Power<S> {
     /// A spring of `stiffness` k (N/m^e) and `exponent` e.

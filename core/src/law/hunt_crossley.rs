@@ -18,6 +18,8 @@ pub struct HuntCrossley<S, E> {
     hysteresis: S,
 }
 
+crate::cast::cast!([E] [] HuntCrossley: HuntCrossley<f64, E> => T HuntCrossley<T, E::Of<T>> { elastic, hysteresis });
+
 impl<S: Scalar + PartialOrd, E: Elastic<S>> HuntCrossley<S, E> {
     /// A contact with the spring `elastic` that keeps the share `restitution` r of a `speed` v (m/s) of approach.
     ///

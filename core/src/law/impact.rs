@@ -18,6 +18,8 @@ pub struct Impact<S, E> {
     fade_in: S,
 }
 
+crate::cast::cast!([E] [] Impact: Impact<f64, E> => T Impact<T, E::Of<T>> { elastic, damping, per_depth, fade_in });
+
 impl<S: Scalar + PartialOrd, E: Elastic<S>> Impact<S, E> {
     /// A contact with the spring `elastic` and a damper that reaches `damping` c (N·s/m) at the `depth` d (m).
     ///

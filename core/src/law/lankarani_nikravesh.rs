@@ -13,6 +13,8 @@ use crate::{ParameterError, Scalar};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LankaraniNikravesh<S, E>(HuntCrossley<S, E>);
 
+crate::cast::cast!([E] [] LankaraniNikravesh: LankaraniNikravesh<f64, E> => T LankaraniNikravesh<T, E::Of<T>> { 0 });
+
 impl<S: Scalar + PartialOrd, E: Elastic<S>> LankaraniNikravesh<S, E> {
     /// A contact with the spring `elastic` that keeps the share `restitution` r of a `speed` v (m/s) of approach.
     ///

@@ -12,6 +12,8 @@ pub struct Element<L, W, const R: usize> {
     pub law: W,
 }
 
+crate::cast::cast!([L W] [R] Element: Element<L, W, R> => T Element<L::Of<T>, W::Of<T>, R> { link, law });
+
 impl<L, W, const R: usize> Element<L, W, R> {
     /// What it sees and gives at time `t` (s) as a drive of bodies that are placed.
     #[inline(always)]

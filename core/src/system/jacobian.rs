@@ -1,7 +1,7 @@
 //! What derivatives of forces by velocities or places add up in, and how it is solved with.
 
 use super::Lu;
-use crate::{SMatrix, SVector, Scalar, linear::inverse};
+use crate::{SMatrix, SVector, Scalar, linear::inverse, product::applied};
 
 /// A matrix of `D` rows and columns, stored as suits the bodies.
 pub trait Jacobian<S: Scalar, const D: usize>: Copy {
@@ -40,7 +40,7 @@ impl<S: Scalar, const D: usize> Jacobian<S, D> for SMatrix<S, D, D> {
 
     #[inline(always)]
     fn times(&self, v: &SVector<S, D>) -> SVector<S, D> {
-        self * v
+        applied(self, v)
     }
 
     #[inline(always)]

@@ -14,6 +14,8 @@ use slipfit_core::{
     system::{LANES, Lanes},
 };
 
+use crate::real::Real;
+
 /// A contact at one instant, or several side by side: a number `S` has a value for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Approach<S = f64> {
@@ -118,13 +120,84 @@ impl Gaps {
 
     /// How long (s) a step may be for contacts that do not push now, and are deeper than `depth` (m): longer ones would be refused.
     pub fn until_pushed(&self, depth: f64) -> f64 {
-        let slack = self.each().filter(|contact| contact.slack > 0.0 && contact.gap < -depth);
-        slack.map(|Approach { gap, rate, .. }| (1.0 - DEPTH_AIMED) * -gap / rate).fold(f64::INFINITY, f64::min)
+        until_pushed(self.each(), depth)
     }
 
     /// Each contact.
     fn each(&self) -> impl Iterator<Item = Approach> {
         self.fours.iter().flat_map(|four| (0..LANES).map(|lane| four.of(lane)))
+    }
+}
+
+/// See [`Gaps::until_pushed`].
+fn until_pushed(contacts: impl Iterator<Item = Approach>, depth: f64) -> f64 {
+    let slack = contacts.filter(|contact| contact.slack > 0.0 && contact.gap < -depth);
+    slack.map(|Approach { gap, rate, .. }| (1.0 - DEPTH_AIMED) * -gap / rate).fold(f64::INFINITY, f64::min)
+}
+
+/// The contacts of several units at one instant: a number has a value for each.
+#[derive(Clone, Debug, Default)]
+pub struct WideGaps<S> {
+    /// The contacts, always in the same order.
+    pub contacts: Vec<Approach<S>>,
+    /// The greatest angular velocity (rad/s) of a body.
+    pub spin: S,
+}
+
+impl<S: Real> WideGaps<S> {
+    /// Makes those of units for which `condition` > 0 the `next` ones.
+    #[inline(always)]
+    pub fn accept(&mut self, condition: S, next: &Self) {
+        let zero = S::zero();
+        let choose = |kept: &mut S, next: S| *kept = condition.select_gt(zero, next, *kept);
+        for (kept, next) in self.contacts.iter_mut().zip(&next.contacts) {
+            choose(&mut kept.gap, next.gap);
+            choose(&mut kept.rate, next.rate);
+            choose(&mut kept.speed, next.speed);
+            choose(&mut kept.slack, next.slack);
+        }
+        choose(&mut self.spin, next.spin);
+    }
+
+    /// The least gap (m) of each unit; infinite without contacts.
+    #[inline(always)]
+    pub fn least(&self) -> S {
+        self.contacts.iter().fold(S::from_f64(f64::INFINITY), |least, contact| least.at_most(contact.gap))
+    }
+
+    /// The greatest slack of each unit: 0 where [`until_pushed`](Self::until_pushed) has nothing to say.
+    #[inline(always)]
+    pub fn slack(&self) -> S {
+        self.contacts.iter().fold(S::zero(), |most, contact| most.max_of(contact.slack))
+    }
+
+    /// [`Gaps::until_pushed`] of the unit on a `lane`.
+    pub fn until_pushed(&self, lane: usize, depth: f64) -> f64 {
+        until_pushed(self.of_unit(lane), depth)
+    }
+
+    /// Above 0 for units of which a contact may begin to act in a step of `length` (s) that ends with `after`.
+    #[inline(always)]
+    pub fn may_act(&self, after: &Self, length: S) -> S {
+        let most = most_left_out(self.spin.max_of(after.spin) * length);
+        let ends = self.contacts.iter().zip(&after.contacts);
+        ends.fold(S::zero(), |may, (from, to)| may_act(may, &[*from, *to], length, most))
+    }
+
+    /// [`between`] of the unit on a `lane`.
+    pub fn between(&self, after: &Self, lane: usize, length: f64, depth: f64) -> Between {
+        let turn = self.spin.get(lane).max(after.spin.get(lane)) * length;
+        between_each(self.of_unit(lane).zip(after.of_unit(lane)), length, turn, depth)
+    }
+
+    /// The contacts of the unit on a `lane`.
+    fn of_unit(&self, lane: usize) -> impl Iterator<Item = Approach> {
+        self.contacts.iter().map(move |Approach { gap, rate, speed, slack }| Approach {
+            gap: gap.get(lane),
+            rate: rate.get(lane),
+            speed: speed.get(lane),
+            slack: slack.get(lane),
+        })
     }
 }
 
@@ -156,25 +229,44 @@ const DEPTH_AIMED: f64 = 0.3;
 /// What happens between the ends `before` and `after` of a step of `length` (s). A contact not deeper than `depth` (m) does not count.
 pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between {
     let turn = before.spin.max(after.spin) * length;
-    // What a cubic leaves out, as a share of how far a contact goes: |g''''| ≤ spin³·speed; it errs by at most length⁴/384 of it. Twice,
-    // since the speed is that of the ends.
-    let left_out = turn * turn * turn / 192.0;
-    let most = if turn > MOST_TURN { left_out.max(1.0) } else { left_out };
-    // Most steps have none of these: without branches, since it is asked of every contact after every step. Above 0 where one may begin to
-    // act that is open at both ends, or does not push at the start.
+    let most = most_left_out(turn);
     let fours = before.fours.iter().zip(&after.fours);
-    let may_act = fours.fold([0.0; LANES], |may_act, (from, to)| {
-        array::from_fn(|lane| {
-            let ends = [from.of(lane), to.of(lane)];
-            let (low, way) = least_and_way(&ends, length);
-            may_act[lane].max_of(low * (fall(&ends, length) + most * way - low)).max_of(from.slack[lane])
-        })
+    let may = fours.fold([0.0; LANES], |may, (from, to)| {
+        array::from_fn(|lane| may_act(may[lane], &[from.of(lane), to.of(lane)], length, most))
     });
-    if may_act == [0.0; LANES] {
+    if may == [0.0; LANES] {
         return Between::Apart;
     }
+    between_each(before.each().zip(after.each()), length, turn, depth)
+}
+
+/// What a cubic leaves out where bodies `turn` (rad) in a step, as a share of how far a contact goes.
+#[inline(always)]
+fn left_out_of<S: Scalar>(turn: S) -> S {
+    // |g''''| ≤ spin³·speed; it errs by at most length⁴/384 of it. Twice, since the speed is that of the ends.
+    turn * turn * turn / S::from_f64(192.0)
+}
+
+/// The same for a first look, to which a body that turns too far may go anywhere.
+#[inline(always)]
+fn most_left_out<S: Scalar>(turn: S) -> S {
+    let left_out = left_out_of(turn);
+    turn.select_gt(S::from_f64(MOST_TURN), left_out.max_of(S::one()), left_out)
+}
+
+/// `before`, or more than 0 where a contact may begin to act in a step of `length` (s), or does not push at its start; `most` of how far
+/// it goes is left out. Without branches, since it is asked of every contact after every step.
+#[inline(always)]
+fn may_act<S: Scalar>(before: S, ends: &[Approach<S>; 2], length: S, most: S) -> S {
+    let (low, way) = least_and_way(ends, length);
+    before.max_of(low * (fall(ends, length) + most * way - low)).max_of(ends[0].slack)
+}
+
+/// What happens in a step of `length` (s) in which bodies `turn` (rad), by all contacts at both of its ends.
+fn between_each(contacts: impl Iterator<Item = (Approach, Approach)>, length: f64, turn: f64, depth: f64) -> Between {
+    let left_out = left_out_of(turn);
     let mut share: Option<f64> = None;
-    for (from, to) in before.each().zip(after.each()) {
+    for (from, to) in contacts {
         let found = if from.slack > 0.0 && from.gap < -depth {
             let cubic = || Cubic::new([from.gap, to.gap], [from.rate * length, to.rate * length]);
             (to.gap > DEPTH_LEFT * from.gap).then(|| cubic().opening(DEPTH_AIMED * from.gap))
@@ -187,12 +279,14 @@ pub fn between(before: &Gaps, after: &Gaps, length: f64, depth: f64) -> Between 
 }
 
 /// The least gap (m) at the ends of a step of `length` (s), and how far (m) one body goes past the other in it.
-fn least_and_way([from, to]: &[Approach; 2], length: f64) -> (f64, f64) {
+#[inline(always)]
+fn least_and_way<S: Scalar>([from, to]: &[Approach<S>; 2], length: S) -> (S, S) {
     (from.gap.at_most(to.gap), from.speed.max_of(to.speed) * length)
 }
 
 /// How far (m) below its values at the ends of a step of `length` (s) the gap's cubic may fall.
-fn fall([from, to]: &[Approach; 2], length: f64) -> f64 {
+#[inline(always)]
+fn fall<S: Scalar>([from, to]: &[Approach<S>; 2], length: S) -> S {
     reach(from.rate, to.rate) * length
 }
 

@@ -5,8 +5,9 @@ use std::sync::{
     atomic::{AtomicU64, Ordering},
 };
 
+use crate::{cast::cast_variants, real::Real};
 use slipfit_core::{
-    ParameterError, Scalar,
+    Cast, ParameterError, Scalar,
     drive::{Command, Commanded, Drive, Piece, Push, Pushed, Train, TrainData, check_pieces},
 };
 
@@ -14,12 +15,17 @@ use slipfit_core::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pieces<S = f64>(pub Arc<[Piece<S>]>);
 
-impl<S: Scalar + PartialOrd> Command<S> for Pieces<S> {
+impl Cast for Pieces {
+    type Of<T: Scalar> = Pieces<T>;
+
+    fn cast<T: Scalar>(&self, number: &mut impl FnMut(f64) -> T) -> Pieces<T> {
+        Pieces(self.0.iter().map(|piece| piece.cast(number)).collect())
+    }
+}
+
+impl<S: Real> Command<S> for Pieces<S> {
     fn piece(&self, t: S) -> Piece<S> {
-        match self.0.partition_point(|piece| piece.start <= t) {
-            0 => Piece { start: S::zero(), coefficients: [S::zero(); 4] },
-            after => self.0[after - 1],
-        }
+        S::piece(&self.0, t)
     }
 
     fn checked(self) -> Result<Self, ParameterError<S>> {
@@ -40,6 +46,15 @@ impl Held {
     /// What is held (N, N·m).
     pub fn get(&self) -> f64 {
         f64::from_bits(self.0.load(Ordering::Relaxed))
+    }
+}
+
+/// The same for all.
+impl Cast for Held {
+    type Of<T: Scalar> = Self;
+
+    fn cast<T: Scalar>(&self, _: &mut impl FnMut(f64) -> T) -> Self {
+        self.clone()
     }
 }
 
@@ -82,7 +97,11 @@ pub enum AnyDrive<S = f64> {
     Friction(Train<S, ()>),
 }
 
-impl<S: Scalar + PartialOrd> AnyDrive<S> {
+cast_variants!([] AnyDrive: AnyDrive => T AnyDrive<T> {
+    Ramp, RampTrain, Commanded, CommandedTrain, Held, HeldTrain, Friction
+});
+
+impl<S: Real> AnyDrive<S> {
     /// The drive with the ramp, or with the command of `pieces` in place of it, on the drive train of `train`, if it has one.
     ///
     /// # Errors
@@ -113,7 +132,7 @@ impl<S: Scalar + PartialOrd> AnyDrive<S> {
     }
 }
 
-impl<S: Scalar + PartialOrd> Push<S> for AnyDrive<S> {
+impl<S: Real> Push<S> for AnyDrive<S> {
     fn checked(self) -> Result<Self, ParameterError<S>> {
         Ok(match self {
             Self::Ramp(drive) => Self::Ramp(drive.checked()?),
@@ -148,7 +167,7 @@ impl<S: Scalar + PartialOrd> Push<S> for AnyDrive<S> {
     }
 }
 
-impl<S: Scalar + PartialOrd> AnyDrive<S> {
+impl<S: Real> AnyDrive<S> {
     /// [`Push::pushed`] of all but a plain ramp, in a function of its own: it would be compiled into every mechanism.
     #[inline(never)]
     fn pushed_otherwise(&self, t: S, v: S) -> Pushed<S> {

@@ -1,6 +1,6 @@
 //! Elements chosen at run time: the laws and links are core's, and so are the bits.
 
-mod spatial;
+mod in_space;
 
 use std::f64::consts::TAU;
 
@@ -13,17 +13,20 @@ use slipfit_core::{
         Assembly, Bodies, Element, Elements, Law, Link,
         law::{Contact, Contoured, Journal, LineSpring, Motor, Pad, Pusher, Spring},
         planar::{self, PlanarTree},
+        spatial::{self, FreeBodies},
     },
 };
 
 use crate::{
+    cast::cast_variants,
     closing::Approach,
     contact::{Laws, SlidingData},
     drive::AnyDrive,
     laws::{AnyNormal, AnySliding},
+    real::Real,
 };
 
-pub use spatial::{SpatialContact, SpatialElement};
+pub use in_space::{SpatialContact, SpatialElement};
 
 /// Over how many stick bands static friction falls halfway to kinetic where a stick band is used in place of true stick: at the end of
 /// the band a thousandth of their difference is lost.
@@ -118,6 +121,40 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
     Some(element.law.gap(&element.link.seen(at, &view).place))
 }
 
+/// Elements that may be contacts.
+pub trait Touching<S: Scalar, B: Bodies<S, D>, const D: usize>: Elements<S, B, D> {
+    /// Shows `see` the contacts that it is.
+    fn approach(&self, at: (&B, &B::Placed), see: &mut impl FnMut(Approach<S>));
+}
+
+impl<S: Scalar, B: Bodies<S, D>, const D: usize> Touching<S, B, D> for () {
+    fn approach(&self, _: (&B, &B::Placed), _: &mut impl FnMut(Approach<S>)) {}
+}
+
+/// Bodies that turn.
+pub trait Spinning<S: Scalar, const D: usize>: Bodies<S, D> {
+    /// The greatest angular velocity (rad/s) of a body that is `placed`.
+    fn fastest(&self, placed: &Self::Placed) -> S;
+}
+
+impl<S: Real, const D: usize> Spinning<S, D> for PlanarTree<S, D> {
+    #[inline(always)]
+    fn fastest(&self, placed: &planar::Placed<S, D>) -> S {
+        let turning = self.topology().iter().zip(&placed.rates).filter(|(kind, _)| **kind == planar::Kind::Turn);
+        turning.fold(S::zero(), |most, (_, rate)| rate.magnitude().max_of(most))
+    }
+}
+
+impl<S: Real, const N: usize, const D: usize> Spinning<S, D> for FreeBodies<S, N, D> {
+    #[inline(always)]
+    fn fastest(&self, placed: &spatial::Placed<S, N>) -> S {
+        placed.bodies.iter().fold(S::zero(), |most, body| {
+            let [x, y, z] = *body.rotation_w.as_ref();
+            (x * x + y * y + z * z).sqrt().max_of(most)
+        })
+    }
+}
+
 /// The most contacts of an element.
 const MOST_WALLS: usize = 4;
 
@@ -149,92 +186,97 @@ fn approach<
 }
 
 /// A line with a contour and any laws.
-type AnyContouredPad = Contoured<f64, Pad<f64, AnyNormal<f64>, AnySliding<f64>>>;
+type AnyContouredPad<S> = Contoured<S, Pad<S, AnyNormal<S>, AnySliding<S>>>;
 
-/// An element in a plane.
+/// An element in a plane. A number `S` has a value for each of several units, or is one.
 #[derive(Clone, Debug, PartialEq)]
-pub enum PlanarElement<const D: usize> {
+pub enum PlanarElement<const D: usize, S = f64> {
     /// A hole around a pin.
-    Journal(Element<planar::Between<f64, D>, Journal<f64, AnyNormal<f64>, AnySliding<f64>>, 4>),
+    Journal(Element<planar::Between<S, D>, Journal<S, AnyNormal<S>, AnySliding<S>>, 4>),
     /// A point before a line.
-    Pad(Element<planar::Across<f64, D>, Pad<f64, AnyNormal<f64>, AnySliding<f64>>, 2>),
+    Pad(Element<planar::Across<S, D>, Pad<S, AnyNormal<S>, AnySliding<S>>, 2>),
     /// A torsion spring, and the angles (rad) at which its two bodies start.
-    Spring(Element<planar::Turning, Spring<f64>, 1>, [f64; 2]),
+    Spring((Element<planar::Turning, Spring<S>, 1>, [S; 2])),
     /// A torque.
-    Motor(Element<planar::Turning, Motor<AnyDrive>, 1>),
+    Motor(Element<planar::Turning, Motor<AnyDrive<S>>, 1>),
     /// A force.
-    Pusher(Element<planar::Along<f64, D>, Pusher<AnyDrive>, 2>),
+    Pusher(Element<planar::Along<S, D>, Pusher<AnyDrive<S>>, 2>),
     /// A point before a line with a contour.
-    Contour(Element<planar::Across<f64, D>, AnyContouredPad, 2>),
+    Contour(Element<planar::Across<S, D>, AnyContouredPad<S>, 2>),
     /// A spring along the line between two points.
-    Line(Element<planar::Between<f64, D>, LineSpring<f64, 2>, 4>),
+    Line(Element<planar::Between<S, D>, LineSpring<S, 2>, 4>),
 }
+
+cast_variants!([D] PlanarElement: PlanarElement<D> => T PlanarElement<D, T> {
+    Journal, Pad, Spring, Motor, Pusher, Contour, Line
+});
+
+/// Bodies in a plane, and where they are.
+type Planar<'a, S, const D: usize> = (&'a PlanarTree<S, D>, &'a planar::Placed<S, D>);
 
 impl<const D: usize> PlanarElement<D> {
     /// The gap (m) of the contact that it is, if it is one.
-    pub fn gap(&self, at: (&PlanarTree<f64, D>, &<PlanarTree<f64, D> as Bodies<f64, D>>::Placed)) -> Option<f64> {
+    pub fn gap(&self, at: Planar<f64, D>) -> Option<f64> {
         match self {
             Self::Journal(element) => gap(element, at),
             Self::Pad(element) => gap(element, at),
             Self::Contour(element) => gap(element, at),
-            Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) | Self::Line(_) => None,
+            Self::Spring(_) | Self::Motor(_) | Self::Pusher(_) | Self::Line(_) => None,
         }
     }
+}
 
-    /// Shows `see` the contacts that it is.
-    pub fn approach(
-        &self,
-        at: (&PlanarTree<f64, D>, &<PlanarTree<f64, D> as Bodies<f64, D>>::Placed),
-        see: &mut impl FnMut(Approach),
-    ) {
+impl<const D: usize, S: Real> Touching<S, PlanarTree<S, D>, D> for PlanarElement<D, S> {
+    #[inline(always)]
+    fn approach(&self, at: Planar<S, D>, see: &mut impl FnMut(Approach<S>)) {
         match self {
             Self::Journal(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Pad(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Contour(element) => approach((element, &element.law.wall.contact.normal), at, see),
-            Self::Spring(..) | Self::Motor(_) | Self::Pusher(_) | Self::Line(_) => {}
+            Self::Spring(_) | Self::Motor(_) | Self::Pusher(_) | Self::Line(_) => {}
         }
     }
 }
 
 /// How far (rad) turning coordinates have turned since the start, with their whole turns, as far as springs look at them; 0 of others.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Angles<const D: usize>([f64; D]);
+pub struct Angles<const D: usize, S = f64>([S; D]);
 
-impl<const D: usize> Default for Angles<D> {
+impl<const D: usize, S: Real> Default for Angles<D, S> {
     fn default() -> Self {
-        Self([0.0; D])
+        Self([S::zero(); D])
     }
 }
 
-impl<const D: usize> Angles<D> {
+impl<const D: usize, S: Real> Angles<D, S> {
     /// How far a coordinate has; 0 for the frame.
-    fn of(&self, turn: Option<usize>) -> f64 {
-        turn.map_or(0.0, |k| self.0[k])
+    fn of(&self, turn: Option<usize>) -> S {
+        turn.map_or(S::zero(), |k| self.0[k])
     }
 }
 
-impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
-    type Internal = Angles<D>;
+impl<const D: usize, S: Real> Elements<S, PlanarTree<S, D>, D> for PlanarElement<D, S> {
+    type Internal = Angles<D, S>;
 
     const STICKS: bool = false;
 
-    fn fresh(&self) -> Angles<D> {
+    fn fresh(&self) -> Angles<D, S> {
         Angles::default()
     }
 
     #[inline(always)]
     fn act(
         &self,
-        way: (f64, Way<f64>),
-        at: (&PlanarTree<f64, D>, &planar::Placed<f64, D>),
-        angles: &Angles<D>,
-        _: Option<&mut Angles<D>>,
-        sum: &mut impl Assembly<f64, PlanarTree<f64, D>, D>,
+        way: (S, Way<S>),
+        at: (&PlanarTree<S, D>, &planar::Placed<S, D>),
+        angles: &Angles<D, S>,
+        _: Option<&mut Angles<D, S>>,
+        sum: &mut impl Assembly<S, PlanarTree<S, D>, D>,
     ) {
         match self {
             Self::Journal(element) => act(element, way, at, &(), sum),
             Self::Pad(element) => act(element, way, at, &(), sum),
-            Self::Spring(element, _) => {
+            Self::Spring((element, _)) => {
                 let planar::Turning { body, against } = element.link;
                 act(element, way, at, &(element.law.start + angles.of(body) - angles.of(against)), sum);
             }
@@ -246,24 +288,24 @@ impl<const D: usize> Elements<f64, PlanarTree<f64, D>, D> for PlanarElement<D> {
         }
     }
 
-    fn remembered(&self, (_, placed): (&PlanarTree<f64, D>, &planar::Placed<f64, D>), angles: &Angles<D>) -> Angles<D> {
+    fn remembered(&self, (_, placed): Planar<S, D>, angles: &Angles<D, S>) -> Angles<D, S> {
         let mut next = *angles;
-        if let Self::Spring(Element { link: planar::Turning { body, against }, .. }, starts) = self {
+        if let Self::Spring((Element { link: planar::Turning { body, against }, .. }, starts)) = self {
             for (turn, start) in [body, against].into_iter().zip(starts) {
                 if let Some(k) = *turn {
-                    let angle = libm::atan2(placed.axes[k].y, placed.axes[k].x);
-                    next.0[k] = next_to(angle, start + angles.0[k]) - start;
+                    let angle = placed.axes[k].y.by_each(placed.axes[k].x, libm::atan2);
+                    next.0[k] = angle.by_each(*start + angles.0[k], next_to) - *start;
                 }
             }
         }
         next
     }
 
-    fn shifted(&self, base: &Angles<D>, from: &Angles<D>, to: &Angles<D>, weight: f64) -> Angles<D> {
+    fn shifted(&self, base: &Angles<D, S>, from: &Angles<D, S>, to: &Angles<D, S>, weight: S) -> Angles<D, S> {
         Angles(std::array::from_fn(|k| base.0[k] + (to.0[k] - from.0[k]) * weight))
     }
 
-    fn accept(&self, condition: f64, next: &Angles<D>, kept: &mut Angles<D>) {
+    fn accept(&self, condition: S, next: &Angles<D, S>, kept: &mut Angles<D, S>) {
         for (kept, next) in kept.0.iter_mut().zip(next.0) {
             *kept = next.or_old(condition, *kept);
         }

@@ -156,7 +156,7 @@ pub const CHANGES: [f64; 2] = [0.2, 3.0];
 pub const FIRST_STEP: f64 = 2e-5;
 
 /// Steps between two looks at whether somebody asked to stop.
-const STEPS_PER_LOOK: u32 = 256;
+pub(crate) const STEPS_PER_LOOK: u32 = 256;
 
 /// The accelerations (m/s², rad/s²) at the start and the end of a step; see [`Dense`].
 pub type Accelerations<const D: usize> = [SVector<f64, D>; 2];
@@ -185,55 +185,107 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
     watched: Watched<impl Fn(&MotionOf<f64, M, D>, &mut Gaps)>,
     mut accept: impl FnMut(f64, &MotionOf<f64, M, D>, Option<Accelerations<D>>, &Gaps) -> ControlFlow<()>,
 ) -> Result<Effort, Stopped> {
-    let (mut t, mut h, mut motion, mut effort) = (0.0, FIRST_STEP, start, Effort::default());
+    let (mut pace, mut motion) = (Pace::default(), start);
     let differentiated = |t: f64, motion: &MotionOf<f64, M, D>| {
         mechanism.differentiated(t, &motion.pose, &motion.internal, &motion.velocity)
     };
     let [mut before, mut after] = [Gaps::default(), Gaps::default()];
     (watched.gaps)(&motion, &mut before);
     // First `accept`: a controller that samples there changes what acts from then on.
-    let mut flow = accept(t, &motion, None, &before);
-    let mut at_start = differentiated(t, &motion);
-    while t < duration && flow.is_continue() {
-        let tried = effort.accepted + effort.refused;
-        if tried.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
+    let mut flow = accept(pace.t, &motion, None, &before);
+    let mut at_start = differentiated(pace.t, &motion);
+    while pace.t < duration && flow.is_continue() {
+        if pace.tried().is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
             return Err(Stopped::Interrupted);
         }
-        // A last step that would leave a splinter takes it along.
-        let next = watched.bends[watched.bends.partition_point(|bend| *bend <= t)..].first();
-        let limit = next.map_or(duration, |bend| bend.min(duration));
-        let length = if t + 1.01 * h >= limit { limit - t } else { h };
+        let t = pace.t;
+        let (length, limit) = pace.next(duration, watched.bends);
         let (step, accelerations) = I::dense_step(mechanism, t, length, &motion, &at_start);
         // A step that leaves the finite range is the worst of all: stages deep in a contact that the derivatives at the step's start do
         // not know overflow.
         let probe = mechanism.finiteness_probe(&step.motion.pose) + step.motion.velocity.sum() * 0.0;
-        let error = Some(error(&step, length) + probe).filter(|error| error.is_finite()).unwrap_or(1e12);
-        let factor = (SAFETY / root(error.max(1e-12), I::ORDER)).clamp(CHANGES[0], CHANGES[1]);
-        h = (length * factor).clamp(LEAST_STEP, GREATEST_STEP);
-        if tried >= STEPS_MOST || (error > 1.0 && length <= LEAST_STEP) {
-            return Err(Stopped::Unsolved(t));
-        }
-        if error > 1.0 {
-            effort.refused += 1;
+        if !pace.is_good(error(&step, length) + probe, length, I::ORDER)? {
             continue;
         }
         (watched.gaps)(&step.motion, &mut after);
-        if let Between::Closes(share) = closing::between(&before, &after, length, watched.depth)
-            && length > LEAST_STEP
-        {
-            h = (length * share).max(LEAST_STEP);
-            effort.refused += 1;
+        if pace.is_shortened(closing::between(&before, &after, length, watched.depth), length) {
             continue;
         }
         std::mem::swap(&mut before, &mut after);
-        h = h.min(before.until_pushed(watched.depth)).max(LEAST_STEP);
-        effort.accepted += 1;
-        t = if length == limit - t { limit } else { t + length };
+        pace.accept(length, limit, before.until_pushed(watched.depth));
         motion = step.motion;
-        flow = accept(t, &motion, Some(accelerations), &before);
-        at_start = differentiated(t, &motion);
+        flow = accept(pace.t, &motion, Some(accelerations), &before);
+        at_start = differentiated(pace.t, &motion);
     }
-    Ok(effort)
+    Ok(pace.effort)
+}
+
+/// How far an integration is, and how long its next step is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    /// Time (s).
+    pub t: f64,
+    /// Length (s) that its errors allow.
+    h: f64,
+    /// Steps so far.
+    pub effort: Effort,
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        Self { t: 0.0, h: FIRST_STEP, effort: Effort::default() }
+    }
+}
+
+impl Pace {
+    /// Steps so far, refused ones among them.
+    pub fn tried(&self) -> u32 {
+        self.effort.accepted + self.effort.refused
+    }
+
+    /// The length (s) of the next step of a run of this `duration` (s) with these ascending `bends` (s), and when (s) it ends at the latest.
+    pub fn next(&self, duration: f64, bends: &[f64]) -> (f64, f64) {
+        let Self { t, h, .. } = *self;
+        let next = bends[bends.partition_point(|bend| *bend <= t)..].first();
+        let limit = next.map_or(duration, |bend| bend.min(duration));
+        // A last step that would leave a splinter takes it along.
+        (if t + 1.01 * h >= limit { limit - t } else { h }, limit)
+    }
+
+    /// Whether a step of this `length` (s) is good enough, of a scheme of this `order` that finds this `error`, of which 1 is allowed.
+    ///
+    /// # Errors
+    /// [`Stopped::Unsolved`] if no shorter one would be.
+    pub fn is_good(&mut self, error: f64, length: f64, order: u32) -> Result<bool, Stopped> {
+        let error = Some(error).filter(|error| error.is_finite()).unwrap_or(1e12);
+        let factor = (SAFETY / root(error.max(1e-12), order)).clamp(CHANGES[0], CHANGES[1]);
+        self.h = (length * factor).clamp(LEAST_STEP, GREATEST_STEP);
+        if self.tried() >= STEPS_MOST || (error > 1.0 && length <= LEAST_STEP) {
+            return Err(Stopped::Unsolved(self.t));
+        }
+        if error > 1.0 {
+            self.effort.refused += 1;
+        }
+        Ok(error <= 1.0)
+    }
+
+    /// Whether a good step of this `length` (s) has to be shorter because of what happens in it.
+    pub fn is_shortened(&mut self, between: Between, length: f64) -> bool {
+        let Between::Closes(share) = between else { return false };
+        if length <= LEAST_STEP {
+            return false;
+        }
+        self.h = (length * share).max(LEAST_STEP);
+        self.effort.refused += 1;
+        true
+    }
+
+    /// Takes a step of this `length` (s), at the latest to the time `limit` (s); the next is not longer than `most` (s).
+    pub fn accept(&mut self, length: f64, limit: f64, most: f64) {
+        self.h = self.h.min(most).max(LEAST_STEP);
+        self.effort.accepted += 1;
+        self.t = if length == limit - self.t { limit } else { self.t + length };
+    }
 }
 
 /// The root of `x` of this order.

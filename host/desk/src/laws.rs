@@ -12,7 +12,10 @@ use slipfit_core::{
     slide::Slide,
 };
 
-use crate::contact::{NormalData, Rebound};
+use crate::{
+    cast::cast_variants,
+    contact::{NormalData, Rebound},
+};
 
 /// Any elastic law of the menu.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +76,8 @@ fn powered<S: Scalar>(law: &Power<S>, depth: S) -> (S, S) {
     law.force(depth)
 }
 
+cast_variants!([] AnyElastic: AnyElastic<f64> => T AnyElastic<T> { Linear, ThreeHalves, Power });
+
 /// Any law along a contact's normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AnyNormal<S> {
@@ -83,6 +88,8 @@ pub enum AnyNormal<S> {
     /// Lankarani and Nikravesh's.
     LankaraniNikravesh(LankaraniNikravesh<S, AnyElastic<S>>),
 }
+
+cast_variants!([] AnyNormal: AnyNormal<f64> => T AnyNormal<T> { Impact, HuntCrossley, LankaraniNikravesh });
 
 impl<S: Scalar + PartialOrd> AnyNormal<S> {
     /// The law of `data`.
@@ -134,6 +141,8 @@ pub enum AnySliding<S> {
     /// Friction with a static and a kinetic coefficient and a viscous part.
     Stribeck(Stribeck<S>),
 }
+
+cast_variants!([] AnySliding: AnySliding<f64> => T AnySliding<T> { Regularised, Stribeck; Frictionless });
 
 /// The traction of Stribeck friction, in a function of its own: it is seldom asked for, and would be compiled into every contact.
 #[inline(never)]

@@ -5,17 +5,21 @@
 //! types, [`population`] thousands of such slides on the lanes of a register.
 #![deny(unsafe_code)]
 
+mod cast;
 pub mod closing;
 pub mod contact;
 pub mod drive;
 pub mod element;
 pub mod error_control;
+pub mod grouped;
 pub mod laws;
 pub mod out_of_line;
 pub mod pack;
 pub mod plant;
 pub mod population;
+pub mod real;
 pub mod scheme;
 pub mod settled;
 pub mod side_by_side;
 pub mod slide;
+pub mod units;

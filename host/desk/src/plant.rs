@@ -12,7 +12,7 @@ use slipfit_core::{
     pose::Pose,
     system::{
         Bodies, Reduced, System, ThroughJoints,
-        planar::{Kind, PlanarTree},
+        planar::PlanarTree,
         spatial::{FreeBodies, tree::SpatialTree},
     },
 };
@@ -20,11 +20,11 @@ use slipfit_system::interrupt;
 
 use crate::{
     closing::Gaps,
-    element::{PlanarElement, SpatialElement},
+    element::{PlanarElement, SpatialElement, Spinning as _, Touching as _},
     error_control::{Accelerations, Effort, Stopped, Watched, integrate},
     out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor},
-    side_by_side::{SideBySide, fastest},
+    side_by_side::SideBySide,
 };
 
 /// Most bodies of a mechanism in space.
@@ -44,10 +44,10 @@ pub type JointedBodies<const D: usize> = SpatialTree<f64, MOST_BODIES, { 6 * MOS
 pub type JointedPlant<'a, const D: usize> =
     OutOfLine<System<JointedBodies<D>, ThroughJoints<&'a [SpatialElement], { 6 * MOST_BODIES }>>>;
 
-/// Sees the time (s) and the motion at the start and at the end of every step, with the step's accelerations and the contacts there where
-/// they are known, and says whether to go on.
+/// Sees the time (s) and the motion at the start and at the end of every step, with the step's accelerations and the least gap (m) of a
+/// contact there where they are known, and says whether to go on.
 pub type See<'a, P, const D: usize> =
-    &'a mut dyn FnMut(f64, &Motion<f64, P, (), D>, Option<Accelerations<D>>, Option<&Gaps>) -> ControlFlow<()>;
+    &'a mut dyn FnMut(f64, &Motion<f64, P, (), D>, Option<Accelerations<D>>, Option<f64>) -> ControlFlow<()>;
 
 /// What a step may err by.
 #[derive(Clone, Copy)]
@@ -129,8 +129,7 @@ impl<const D: usize> Watch<[[f64; 2]; D], D> for PlanarPlant<'_, D> {
     fn watch(&self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>, gaps: &mut Gaps) {
         let bodies = self.mechanism().bodies();
         let placed = bodies.placed(pose, velocity);
-        let turning = bodies.topology().iter().zip(velocity).filter(|(kind, _)| **kind == Kind::Turn);
-        gaps.clear(turning.fold(0.0, |most, (_, rate)| most.max(rate.abs())));
+        gaps.clear(bodies.fastest(&placed));
         let mut add = |contact| gaps.add(contact);
         self.mechanism().elements().iter().for_each(|one| one.approach((bodies, &placed), &mut add));
     }
@@ -147,7 +146,7 @@ impl<const D: usize> Watch<[[f64; 2]; D], D> for JointedPlant<'_, D> {
         let bodies = self.mechanism().bodies();
         let placed = bodies.placed(pose, velocity);
         let (free, placed) = bodies.free(&placed);
-        gaps.clear(fastest(placed));
+        gaps.clear(free.fastest(placed));
         let mut add = |contact| gaps.add(contact);
         self.mechanism().elements().0.iter().for_each(|one| one.approach((free, placed), &mut add));
     }
@@ -184,7 +183,7 @@ macro_rules! plants {
                         depth: allowed.depth,
                         bends: allowed.bends,
                     },
-                    |t, motion, accelerations, gaps| see(t, &visible(motion), accelerations, Some(gaps)),
+                    |t, motion, accelerations, gaps| see(t, &visible(motion), accelerations, Some(gaps.least())),
                 )
             }
 

@@ -5,7 +5,7 @@ use std::array;
 use nalgebra::Matrix3;
 use pulp::{Simd, WithSimd};
 use slipfit_core::{
-    SVector, Vector3,
+    Cast as _, SVector, Vector3,
     mechanism::Differentiated,
     pose::Pose,
     system::{
@@ -18,7 +18,7 @@ use slipfit_core::{
 use crate::{
     closing::{Approach, Gaps},
     contact::Laws,
-    element::{SpatialContact, SpatialElement, contact},
+    element::{SpatialContact, SpatialElement, Spinning as _, Touching as _, contact},
     out_of_line::Contacts,
     pack::Pack,
 };
@@ -163,7 +163,7 @@ impl<const N: usize, const D: usize> SideBySide<N, D> {
     pub fn watch(&self, system: &Free<N, D>, pose: &[Pose<f64>; N], velocity: &SVector<f64, D>, gaps: &mut Gaps) {
         let bodies = system.bodies();
         let placed = bodies.placed(pose, velocity);
-        gaps.clear(fastest(&placed));
+        gaps.clear(bodies.fastest(&placed));
         let rest = match self {
             #[cfg(target_arch = "x86_64")]
             Self::Wide(quads) => {
@@ -180,11 +180,6 @@ impl<const N: usize, const D: usize> SideBySide<N, D> {
         };
         rest.iter().for_each(|one| one.approach((bodies, &placed), &mut |contact| gaps.add(contact)));
     }
-}
-
-/// The greatest angular velocity (rad/s) of bodies that are `placed`.
-pub fn fastest<const N: usize>(placed: &Placed<f64, N>) -> f64 {
-    placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm()))
 }
 
 /// Contacts by their kinds, and other elements.
@@ -246,7 +241,7 @@ impl<V: Simd, const N: usize, const D: usize> Quads<V, N, D> {
             }
             None => false,
         });
-        Self { instructions, bodies: bodies.cast(everywhere), quads, rest }
+        Self { instructions, bodies: bodies.cast(&mut everywhere), quads, rest }
     }
 }
 

@@ -108,7 +108,7 @@ pub fn elements<const D: usize>(
         let [body, against] = spring.between.map(|port| mounts.turn(port));
         let starts = [body, against].map(|turn| turn.map_or(0.0, |k| places[k]));
         let law = Spring { stiffness, damping, rest, start: starts[0] - starts[1] };
-        elements.push(PlanarElement::Spring(Element { link: Turning { body, against }, law }, starts));
+        elements.push(PlanarElement::Spring((Element { link: Turning { body, against }, law }, starts)));
     }
     for joint in &mechanism.joints {
         let Some(data) = joint.drag else { continue };

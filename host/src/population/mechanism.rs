@@ -13,7 +13,7 @@ use crate::{
         outcome::{Outcome, Verdict},
         simulate::SimulateError,
     },
-    mechanism::{ByDrive, ENERGY, Mechanism, confirmed, run},
+    mechanism::{ByDrive, ENERGY, Made, Mechanism, MechanismRun, confirmed, run, run_many},
     setup::{Adjustable, RunSpec},
 };
 
@@ -24,27 +24,30 @@ const ERROR: f64 = 1e-4;
 impl Subject for ByDrive<'_> {
     /// A unit whose gaps its joints do not allow cannot be assembled: it is jammed where it stands.
     fn units(&self, drawn: &Drawn) -> Result<Vec<Unit>, SimulateError> {
-        let unit = |i: usize| {
-            let (found, _) = unit(self, drawn, i)?;
-            Ok(Unit { number: drawn.numbers.start + i as u64, gaps: drawn.gaps[i].clone(), outcome: found })
+        let all: Vec<usize> = (0..drawn.gaps.len()).collect();
+        let unit = |(i, (outcome, _)): (usize, (UnitOutcome, f64))| Unit {
+            number: drawn.numbers.start + i as u64,
+            gaps: drawn.gaps[i].clone(),
+            outcome,
         };
-        parallel::each(drawn.gaps.len(), unit).into_iter().collect()
+        Ok(units(self, drawn, &all)?.into_iter().enumerate().map(unit).collect())
     }
 
     fn decisive(&self, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Result<Decisive, Fault>>, SimulateError> {
-        let decisive = |i: &usize| {
-            let (outcome, share) = unit(self, drawn, *i)?;
+        let decisive = |(outcome, share): (UnitOutcome, f64)| {
             if let Some(fault @ (Fault::Unsolved | Fault::OutOfBounds)) = outcome.fault {
-                return Ok(Err(fault));
+                return Err(fault);
             }
             let speed = (outcome.verdict != Verdict::Undecided).then_some(share);
-            Ok(Ok(Decisive { speed, force: outcome.peak_force }))
+            Ok(Decisive { speed, force: outcome.peak_force })
         };
-        parallel::try_map(asked, decisive)
+        Ok(units(self, drawn, asked)?.into_iter().map(decisive).collect())
     }
 
     fn trouble(&self, drawn: &Drawn, i: usize) -> Option<String> {
-        of_run(self, drawn, i).err().map(|error| error.to_string())
+        let own = mechanism_of(self.mechanism(), drawn, i);
+        let spec = spec(&own);
+        run(&Mechanism { run: spec, ..own }, &drawn.gaps[i], spec.duration).err().map(|error| error.to_string())
     }
 
     fn gaps_at(&self, n: &[f64]) -> Vec<f64> {
@@ -77,36 +80,64 @@ pub fn mechanism_of(mechanism: &Mechanism, drawn: &Drawn, i: usize) -> Mechanism
     own
 }
 
-/// What unit `i` of those `drawn` does, and its final speed as a share of the command.
-fn unit(driven: &ByDrive, drawn: &Drawn, i: usize) -> Result<(UnitOutcome, f64), SimulateError> {
-    if interrupt::requested() {
-        return Err(SimulateError::Interrupted);
-    }
-    if !driven.fits(&drawn.gaps[i]) {
-        return Ok((Fault::Unassembled.outcome(), 0.0));
-    }
-    match of_run(driven, drawn, i) {
-        Ok((outcome, share, at_desk)) => Ok((told(&outcome, at_desk), share)),
-        Err(error) => Ok((Fault::of(error)?.outcome(), 0.0)),
-    }
+/// What is simulated of `own`, a unit.
+fn spec(own: &Mechanism) -> RunSpec {
+    RunSpec { error: own.run.error.max(ERROR), ..own.run }
 }
 
-/// What the run of unit `i` found, its final speed as a share of the command, and whether it was run again.
-fn of_run(driven: &ByDrive, drawn: &Drawn, i: usize) -> Result<(Outcome, f64, bool), SimulateError> {
-    let gaps = &drawn.gaps[i];
-    let own = mechanism_of(driven.mechanism(), drawn, i);
-    let spec = RunSpec { error: own.run.error.max(ERROR), ..own.run };
-    let found = run(&Mechanism { run: spec, ..own.clone() }, gaps, spec.duration)?;
+/// Units that are moved at a time: enough that lanes of the last ones do not wait for long, few enough that all threads have some.
+const TOGETHER: usize = 32;
+
+/// What those of the units that were `drawn` which are `asked` for do, and their final speeds as shares of the command.
+fn units(driven: &ByDrive, drawn: &Drawn, asked: &[usize]) -> Result<Vec<(UnitOutcome, f64)>, SimulateError> {
+    let pieces: Vec<&[usize]> = asked.chunks(TOGETHER).collect();
+    let found = parallel::try_map(&pieces, |piece| together(driven, drawn, piece))?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// The same of a few.
+fn together(driven: &ByDrive, drawn: &Drawn, asked: &[usize]) -> Result<Vec<(UnitOutcome, f64)>, SimulateError> {
+    let made = |i: &usize| {
+        let own = mechanism_of(driven.mechanism(), drawn, *i);
+        Made { mechanism: Mechanism { run: spec(&own), ..own }, gaps: drawn.gaps[*i].clone() }
+    };
+    let (fit, misfits): (Vec<usize>, Vec<usize>) = asked.iter().partition(|i| driven.fits(&drawn.gaps[**i]));
+    let made: Vec<Made> = fit.iter().map(made).collect();
+    let runs = run_many(&made, driven.mechanism().run.duration);
+    let mut found: Vec<(usize, (UnitOutcome, f64))> =
+        misfits.into_iter().map(|i| (i, (Fault::Unassembled.outcome(), 0.0))).collect();
+    for (i, run) in fit.into_iter().zip(runs) {
+        if interrupt::requested() {
+            return Err(SimulateError::Interrupted);
+        }
+        let judged = run.map_err(SimulateError::from).and_then(|run| judged(driven, drawn, i, &run));
+        let one = match judged {
+            Ok((outcome, at_desk)) => (told(&outcome, at_desk), outcome.share),
+            Err(error) => (Fault::of(error)?.outcome(), 0.0),
+        };
+        found.push((i, one));
+    }
+    let of = |i: &usize| found.iter().find(|(k, _)| k == i).map(|(_, one)| *one);
+    Ok(asked.iter().filter_map(of).collect())
+}
+
+/// What the run of unit `i` found, run again where that is in doubt; and whether it was.
+fn judged(
+    driven: &ByDrive,
+    drawn: &Drawn,
+    i: usize,
+    found: &MechanismRun,
+) -> Result<(Outcome, bool), SimulateError> {
     let outcome = found.outcomes[driven.index()];
     let has_energy_from_nowhere = found.energy_excess.is_nan() || found.energy_excess > ENERGY;
     let is_doubtful = is_near_a_limit(outcome.share) || outcome.swings.is_some() || has_energy_from_nowhere;
     // No verdict stays none.
     if outcome.verdict == Verdict::Undecided || !is_doubtful {
-        return Ok((outcome, outcome.share, false));
+        return Ok((outcome, false));
     }
-    let [exact, _] = confirmed(&own, gaps, spec.duration)?;
-    let exact = exact.outcomes[driven.index()];
-    Ok((exact, exact.share, true))
+    let own = mechanism_of(driven.mechanism(), drawn, i);
+    let [exact, _] = confirmed(&own, &drawn.gaps[i], own.run.duration)?;
+    Ok((exact.outcomes[driven.index()], true))
 }
 
 fn told(outcome: &Outcome, at_desk: bool) -> UnitOutcome {

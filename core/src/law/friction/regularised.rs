@@ -13,6 +13,8 @@ pub struct Regularised<S> {
     stick_band_squared: S,
 }
 
+crate::cast::cast!([] [] Regularised: Regularised<f64> => T Regularised<T> { coefficient, stick_band_squared });
+
 impl<S: Scalar + PartialOrd> Regularised<S> {
     /// Friction with `coefficient` μ and `stick_band` v_s (m/s).
     ///

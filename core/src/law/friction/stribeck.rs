@@ -21,6 +21,8 @@ pub struct Stribeck<S> {
     band: Regularised<S>,
 }
 
+crate::cast::cast!([] [] Stribeck: Stribeck<f64> => T Stribeck<T> { kinetic, excess, per_speed_squared, viscous, band });
+
 /// Parameters of [`Stribeck`], SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StribeckData<S> {

@@ -16,6 +16,8 @@ pub struct Contour<S> {
     pub curvature: S,
 }
 
+crate::cast::cast!([] [] Contour: Contour<f64> => T Contour<T> { slope, curvature });
+
 impl<S: Scalar> Contour<S> {
     /// How far (m) the wall stands out at `t` (m).
     #[inline(always)]
@@ -43,6 +45,8 @@ pub struct Contoured<S, W> {
     /// The contour.
     pub contour: Contour<S>,
 }
+
+crate::cast::cast!([W] [] Contoured: Contoured<f64, W> => T Contoured<T, W::Of<T>> { wall, contour; along });
 
 /// The numbers that forces change with: distances from and along the wall, their rates, and the rate along the other tangent.
 const NUMBERS: usize = 5;

@@ -11,9 +11,13 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pusher<P>(pub P);
 
+crate::cast::cast!([P] [] Pusher: Pusher<P> => T Pusher<P::Of<T>> { 0 });
+
 /// A drive that turns: about the one number of its link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor<P>(pub P);
+
+crate::cast::cast!([P] [] Motor: Motor<P> => T Motor<P::Of<T>> { 0 });
 
 /// A law that is a drive's.
 pub trait DriveLaw<S, const R: usize> {

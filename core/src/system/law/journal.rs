@@ -12,6 +12,7 @@ use crate::{
     law::{Friction, Normal},
     linear::{growing, length},
     mechanism::Way,
+    product::outer_in_plane,
     system::planar::left,
 };
 
@@ -28,6 +29,8 @@ pub struct Journal<S, N, F> {
     /// Its laws.
     pub contact: Contact<N, F>,
 }
+
+crate::cast::cast!([N F] [] Journal: Journal<f64, N, F> => T Journal<T, N::Of<T>, F::Of<T>> { clearance, radius, contact });
 
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
     type Internal = F::Internal;
@@ -89,7 +92,7 @@ impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 4> for Journal<S, N, F> {
             Some(a) => by_rate + by_place * a,
             None => by_rate,
         };
-        let block = |n: Vector2<S>, t: Vector2<S>| n * normal.transpose() + t * tangent.transpose();
+        let block = |n: Vector2<S>, t: Vector2<S>| outer_in_plane(&n, &normal) + outer_in_plane(&t, &tangent);
         if !F::RUBS {
             let by_place = [normal * push_by_place[0], in_frame(push_by_place[1], per_distance * push)];
             let by_rate = [moving(normal * damping, by_place[0]), moving(Vector2::zeros(), by_place[1])];

@@ -17,6 +17,8 @@ pub struct LineSpring<S, const K: usize> {
     pub drawn: SVector<S, K>,
 }
 
+crate::cast::cast!([] [K] LineSpring: LineSpring<f64, K> => T LineSpring<T, K> { stiffness, damping, free_length, drawn });
+
 /// The force on the moving end, −∂force/∂rate and −∂force/∂place.
 type Pull<S, const K: usize> = (SVector<S, K>, SMatrix<S, K, K>, SMatrix<S, K, K>);
 

@@ -126,6 +126,8 @@ pub struct Contact<N, F> {
     pub friction: F,
 }
 
+crate::cast::cast!([N F] [] Contact: Contact<N, F> => T Contact<N::Of<T>, F::Of<T>> { normal, friction });
+
 /// A contact at one motion and its derivatives by `K` numbers.
 struct Touch<S, M, const K: usize> {
     force: S,

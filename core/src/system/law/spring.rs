@@ -19,6 +19,8 @@ pub struct Spring<S> {
     pub start: S,
 }
 
+crate::cast::cast!([] [] Spring: Spring<f64> => T Spring<T> { stiffness, damping, rest, start });
+
 /// The angle (rad) that is a whole number of turns from `measured` and less than half a turn from `last`; of up to a million turns.
 #[inline(always)]
 fn continued<S: Scalar>(measured: S, last: S) -> S {

@@ -16,6 +16,8 @@ pub struct Pad<S, N, F> {
     pub contact: Contact<N, F>,
 }
 
+crate::cast::cast!([N F] [] Pad: Pad<f64, N, F> => T Pad<T, N::Of<T>, F::Of<T>> { gap, contact });
+
 /// An axis of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
@@ -73,6 +75,8 @@ pub struct Wall<S, N, F> {
     /// Its laws.
     pub contact: Contact<N, F>,
 }
+
+crate::cast::cast!([N F] [] Wall: Wall<f64, N, F> => T Wall<T, N::Of<T>, F::Of<T>> { sign, gap, contact; axis });
 
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
     type Internal = F::Internal;

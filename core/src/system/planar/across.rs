@@ -25,6 +25,8 @@ pub struct Across<S, const D: usize, P = Chain<D>, Q = Chain<D>> {
     pub normal: Vector2<S>,
 }
 
+crate::cast::cast!([] [D] Across: Across<f64, D> => T Across<T, D> { point, seat, normal });
+
 impl<S: Scalar, const D: usize, P, Q: Carrier<D>> Across<S, D, P, Q> {
     /// The axes in the frame.
     #[inline(always)]

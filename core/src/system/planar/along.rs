@@ -21,6 +21,8 @@ pub struct Along<S, const D: usize, C = Chain<D>> {
     pub axis: Vector2<S>,
 }
 
+crate::cast::cast!([] [D] Along: Along<f64, D> => T Along<T, D> { point, sensor, axis });
+
 impl<S: Scalar, const D: usize, C> Along<S, D, C> {
     /// What the columns of point and sensor have along the axis, a row each.
     #[inline(always)]

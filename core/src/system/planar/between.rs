@@ -20,6 +20,8 @@ pub struct Between<S, const D: usize, H = Chain<D>, P = Chain<D>> {
     pub pin: Point<S, D, P>,
 }
 
+crate::cast::cast!([] [D] Between: Between<f64, D> => T Between<T, D> { hole, pin });
+
 impl<S, const D: usize, H: Turns, P: Turns> Between<S, D, H, P> {
     /// The coordinates that turn the hole's and the pin's body, each after the number whose rate it is.
     #[inline(always)]

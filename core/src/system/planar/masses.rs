@@ -42,6 +42,8 @@ pub(super) struct Masses<S, const D: usize> {
     pub levers: [S; D],
 }
 
+crate::cast::cast!([] [D] Masses: Masses<f64, D> => T Masses<T, D> { first, dot, cross, inertia, least, levers; meets });
+
 impl<S: Scalar + PartialOrd, const D: usize> Masses<S, D> {
     /// Those of `bodies`, whose sliding coordinates go along `axes`.
     ///

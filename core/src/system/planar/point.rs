@@ -18,6 +18,8 @@ pub struct Point<S, const D: usize, C = Chain<D>> {
     pub arms: [Vector2<S>; D],
 }
 
+crate::cast::cast!([] [D] Point: Point<f64, D> => T Point<T, D> { base, arms; carrier });
+
 impl<S: Scalar, const D: usize> Point<S, D> {
     /// A point of the frame at `base` (m).
     pub fn fixed(base: Vector2<S>) -> Self {

@@ -10,6 +10,7 @@ use super::{
 use crate::{
     ParameterError, SMatrix, SVector, Scalar, Vector2,
     error::bounded,
+    product::applied,
     system::{Bodies, ByCoordinate, Lu, half_turn},
 };
 
@@ -26,6 +27,8 @@ pub struct PlanarTree<S, const D: usize, J = [Kind; D]> {
     gravity: Vector2<S>,
     per_lever: SVector<S, D>,
 }
+
+crate::cast::cast!([] [D] PlanarTree: PlanarTree<f64, D> => T PlanarTree<T, D> { axes, masses, gravity, per_lever; topology });
 
 impl<S: Scalar + PartialOrd, const D: usize> PlanarTree<S, D> {
     /// A tree of `coordinates` and `bodies` under `gravity` (m/s²).
@@ -223,7 +226,7 @@ impl<S: Scalar, J: Topology<D>, const D: usize> Bodies<S, D> for PlanarTree<S, D
 
     #[inline(always)]
     fn momentum(&self, mass: &SMatrix<S, D, D>, velocity: &SVector<S, D>) -> SVector<S, D> {
-        mass * velocity
+        applied(mass, velocity)
     }
 
     #[inline(always)]

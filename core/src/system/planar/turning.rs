@@ -6,7 +6,7 @@ use super::{
     turned,
 };
 use crate::{
-    SMatrix, SVector, Scalar, Vector2,
+    Cast, SMatrix, SVector, Scalar, Vector2,
     system::{GradientLink, Seen},
 };
 
@@ -18,6 +18,15 @@ pub struct Turning<A = Option<usize>, B = Option<usize>> {
     pub body: A,
     /// What turns the other.
     pub against: B,
+}
+
+/// It has no numbers.
+impl Cast for Turning {
+    type Of<T: Scalar> = Self;
+
+    fn cast<T: Scalar>(&self, _: &mut impl FnMut(f64) -> T) -> Self {
+        *self
+    }
 }
 
 impl<S: Scalar, J: Topology<D>, A: Turns, B: Turns, const D: usize> GradientLink<S, PlanarTree<S, D, J>, D, 1>

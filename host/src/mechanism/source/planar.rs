@@ -170,7 +170,7 @@ fn elements<const D: usize>(
                 laws.push("LineSpring");
                 element(between(&one.link), line_spring(&one.law), 4)
             }
-            PlanarElement::Spring(one, _) => {
+            PlanarElement::Spring((one, _)) => {
                 names.push("Turning");
                 laws.push("Spring");
                 let law = one.law;

@@ -7,22 +7,8 @@ use crate::{
     system::{AbreastBodies, Lanes, everywhere},
 };
 
-impl<S: Scalar, const N: usize, const D: usize> FreeBodies<S, N, D> {
-    /// The same in numbers of another type.
-    pub fn cast<T: Scalar>(&self, number: impl Fn(S) -> T) -> FreeBodies<T, N, D> {
-        let body = |Rigid { mass, inertia_b, centre_w }: &Rigid<S>| Rigid {
-            mass: number(*mass),
-            inertia_b: mapped(inertia_b, &number),
-            centre_w: mapped(centre_w, &number),
-        };
-        FreeBodies {
-            bodies: self.bodies.each_ref().map(body),
-            gravity_w: mapped(&self.gravity_w, &number),
-            per_lever: self.per_lever.map(&number),
-            least_mass: number(self.least_mass),
-        }
-    }
-}
+crate::cast::cast!([] [] Rigid: Rigid<f64> => T Rigid<T> { mass, inertia_b, centre_w });
+crate::cast::cast!([] [N D] FreeBodies: FreeBodies<f64, N, D> => T FreeBodies<T, N, D> { bodies, gravity_w, per_lever, least_mass });
 
 impl<S: Scalar> PlacedBody<S> {
     /// The same in numbers of another type.

@@ -2,7 +2,6 @@
 
 use nalgebra::Matrix3;
 use slipfit_core::{
-    Scalar,
     mechanism::Way,
     system::{
         Assembly, Bodies, Element, Elements,
@@ -11,21 +10,23 @@ use slipfit_core::{
     },
 };
 
-use super::{act, act_apart, approach, gap};
+use super::{Touching, act, act_apart, approach, gap};
 use crate::{
+    cast::cast_variants,
     closing::Approach,
     drive::AnyDrive,
     laws::{AnyNormal, AnySliding},
+    real::Real,
 };
 
 /// A wall with a contour and any laws.
-type AnyContouredWall = Contoured<f64, Wall<f64, AnyNormal<f64>, AnySliding<f64>>>;
+type AnyContouredWall<S> = Contoured<S, Wall<S, AnyNormal<S>, AnySliding<S>>>;
 
 /// A ring around a rod whose axes are turned or not.
 type AnyRing<S> = Element<Rim<S, Option<Matrix3<S>>>, Ring<S, AnyNormal<S>, AnySliding<S>>, 3>;
 
-/// A contact in space, or several side by side: a number `S` has a value for each.
-#[derive(Clone, Debug, PartialEq)]
+/// A contact in space. A number `S` has a value for each of several contacts, or units, or is one.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpatialContact<S = f64> {
     /// A pin between walls.
     Pin(Element<Seat<S>, Pin<S, AnyNormal<S>, AnySliding<S>>, 3>),
@@ -35,29 +36,34 @@ pub enum SpatialContact<S = f64> {
     Ring(AnyRing<S>),
 }
 
+cast_variants!([] SpatialContact: SpatialContact => T SpatialContact<T> { Pin, Wall, Ring });
+
 /// An element in space.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SpatialElement {
+pub enum SpatialElement<S = f64> {
     /// A contact.
-    Contact(SpatialContact),
+    Contact(SpatialContact<S>),
     /// A torque.
-    Motor(Element<About<f64>, Motor<AnyDrive>, 1>),
+    Motor(Element<About<S>, Motor<AnyDrive<S>>, 1>),
     /// A force.
-    Pusher(Element<Along<f64>, Pusher<AnyDrive>, 2>),
+    Pusher(Element<Along<S>, Pusher<AnyDrive<S>>, 2>),
     /// A force by the speed where it acts.
-    AtPoint(Element<AtPoint<f64>, Motor<AnyDrive>, 1>),
+    AtPoint(Element<AtPoint<S>, Motor<AnyDrive<S>>, 1>),
     /// A point before a wall with a contour.
-    Contour(Element<Seat<f64>, AnyContouredWall, 3>),
+    Contour(Element<Seat<S>, AnyContouredWall<S>, 3>),
     /// A spring along the line between two points.
-    Line(Element<Seat<f64>, LineSpring<f64, 3>, 3>),
+    Line(Element<Seat<S>, LineSpring<S, 3>, 3>),
 }
+
+cast_variants!([] SpatialElement: SpatialElement => T SpatialElement<T> { Contact, Motor, Pusher, AtPoint, Contour, Line });
+
+/// Bodies in space, and where they are.
+type Free<'a, S, const N: usize, const D: usize> =
+    (&'a FreeBodies<S, N, D>, &'a <FreeBodies<S, N, D> as Bodies<S, D>>::Placed);
 
 impl SpatialElement {
     /// The gap (m) of the contact that it is, if it is one.
-    pub fn gap<const N: usize, const D: usize>(
-        &self,
-        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
-    ) -> Option<f64> {
+    pub fn gap<const N: usize, const D: usize>(&self, at: Free<f64, N, D>) -> Option<f64> {
         match self {
             Self::Contact(SpatialContact::Pin(element)) => gap(element, at),
             Self::Contact(SpatialContact::Wall(element)) => gap(element, at),
@@ -66,13 +72,11 @@ impl SpatialElement {
             Self::Motor(_) | Self::Pusher(_) | Self::AtPoint(_) | Self::Line(_) => None,
         }
     }
+}
 
-    /// Shows `see` the contacts that it is.
-    pub fn approach<const N: usize, const D: usize>(
-        &self,
-        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
-        see: &mut impl FnMut(Approach),
-    ) {
+impl<S: Real, const N: usize, const D: usize> Touching<S, FreeBodies<S, N, D>, D> for SpatialElement<S> {
+    #[inline(always)]
+    fn approach(&self, at: Free<S, N, D>, see: &mut impl FnMut(Approach<S>)) {
         match self {
             Self::Contact(contact) => contact.approach(at, see),
             Self::Contour(element) => approach((element, &element.law.wall.contact.normal), at, see),
@@ -81,14 +85,9 @@ impl SpatialElement {
     }
 }
 
-impl<S: Scalar + PartialOrd> SpatialContact<S> {
-    /// Shows `see` the contacts that it is.
+impl<S: Real, const N: usize, const D: usize> Touching<S, FreeBodies<S, N, D>, D> for SpatialContact<S> {
     #[inline(always)]
-    pub fn approach<const N: usize, const D: usize>(
-        &self,
-        at: (&FreeBodies<S, N, D>, &<FreeBodies<S, N, D> as Bodies<S, D>>::Placed),
-        see: &mut impl FnMut(Approach<S>),
-    ) {
+    fn approach(&self, at: Free<S, N, D>, see: &mut impl FnMut(Approach<S>)) {
         match self {
             Self::Pin(element) => approach((element, &element.law.contact.normal), at, see),
             Self::Wall(element) => approach((element, &element.law.contact.normal), at, see),
@@ -97,7 +96,7 @@ impl<S: Scalar + PartialOrd> SpatialContact<S> {
     }
 }
 
-impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialContact<S> {
+impl<S: Real, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialContact<S> {
     type Internal = ();
 
     const STICKS: bool = false;
@@ -125,7 +124,7 @@ impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBod
     fn accept(&self, _: S, (): &(), (): &mut ()) {}
 }
 
-impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
+impl<S: Real, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialElement<S> {
     type Internal = ();
 
     const STICKS: bool = false;
@@ -135,11 +134,11 @@ impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for
     #[inline(always)]
     fn act(
         &self,
-        way: (f64, Way<f64>),
-        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
+        way: (S, Way<S>),
+        at: (&FreeBodies<S, N, D>, &<FreeBodies<S, N, D> as Bodies<S, D>>::Placed),
         (): &(),
         _: Option<&mut ()>,
-        sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
+        sum: &mut impl Assembly<S, FreeBodies<S, N, D>, D>,
     ) {
         match self {
             // Inlined: a call from wide instructions costs more than what these do.
@@ -153,7 +152,7 @@ impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for
         }
     }
 
-    fn shifted(&self, (): &(), (): &(), (): &(), _: f64) {}
+    fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
 
-    fn accept(&self, _: f64, (): &(), (): &mut ()) {}
+    fn accept(&self, _: S, (): &(), (): &mut ()) {}
 }

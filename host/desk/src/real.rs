@@ -1,0 +1,77 @@
+//! Numbers that the desk computes with: one, or one for each of several units.
+
+use pulp::Simd;
+use slipfit_core::{
+    Scalar,
+    drive::{Piece, piece_among},
+};
+
+use crate::pack::Pack;
+
+/// A number, or one for each of several units. A comparison holds if it holds for all of them.
+pub trait Real: Scalar + PartialOrd {
+    /// How many units it has a value for.
+    const UNITS: usize;
+
+    /// The value of the unit on a `lane`.
+    fn get(self, lane: usize) -> f64;
+
+    /// Gives the unit on a `lane` the value `x`.
+    fn set(&mut self, lane: usize, x: f64);
+
+    /// What `of` makes of each of these numbers and the other's.
+    fn by_each(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self;
+
+    /// That of the `pieces` of a command which holds at time `t` (s).
+    fn piece(pieces: &[Piece<Self>], t: Self) -> Piece<Self>;
+}
+
+impl Real for f64 {
+    const UNITS: usize = 1;
+
+    fn get(self, _: usize) -> f64 {
+        self
+    }
+
+    fn set(&mut self, _: usize, x: f64) {
+        *self = x;
+    }
+
+    fn by_each(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
+        of(self, other)
+    }
+
+    fn piece(pieces: &[Piece<Self>], t: Self) -> Piece<Self> {
+        match pieces.partition_point(|piece| piece.start <= t) {
+            0 => Piece { start: 0.0, coefficients: [0.0; 4] },
+            after => pieces[after - 1],
+        }
+    }
+}
+
+impl<V: Simd> Real for Pack<V, f64> {
+    const UNITS: usize = Self::LANES;
+
+    #[inline(always)]
+    fn get(self, lane: usize) -> f64 {
+        Pack::get(&self, lane)
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, x: f64) {
+        Pack::set(self, lane, x);
+    }
+
+    #[inline(always)]
+    fn by_each(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
+        let mut result = self;
+        for (x, y) in result.numbers_mut().iter_mut().zip(other.numbers()) {
+            *x = of(*x, *y);
+        }
+        result
+    }
+
+    fn piece(pieces: &[Piece<Self>], t: Self) -> Piece<Self> {
+        piece_among(pieces, t)
+    }
+}

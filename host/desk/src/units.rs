@@ -1,0 +1,371 @@
+//! Many units of a mechanism at a time, each on a lane of the machine's registers, by error-controlled steps.
+//!
+//! Units have the same bodies, joints and laws, and other numbers. Every lane has a time and a step of its own, and takes the next
+//! unit as soon as its own has come to its end. A unit has the bits that it has alone, by
+//! [`integrate`](crate::error_control::integrate).
+
+use pulp::{Simd, WithSimd};
+use slipfit_core::{
+    Cast, SVector, Scalar as _,
+    integrator::{Dense, Integrator, Motion, MotionOf, Rodas4, Step},
+    mechanism::Mechanism,
+    pose::{Orientation, Pose},
+    system::{Bodies, System, planar::PlanarTree},
+};
+use slipfit_system::interrupt;
+
+use crate::{
+    closing::WideGaps,
+    element::{PlanarElement, Touching, Spinning},
+    error_control::{Effort, Pace, STEPS_PER_LOOK, Stopped},
+    grouped::Grouped,
+    pack::Pack,
+    plant::{Allowed, Reported, See},
+    real::Real,
+};
+
+/// A unit to be moved: its bodies and what acts on them, where and how fast it starts, and who sees it move.
+pub struct Unit<'a, B: Bodies<f64, D>, C, E, const D: usize> {
+    /// The bodies.
+    pub bodies: B,
+    /// What acts on them.
+    pub elements: Grouped<C, E>,
+    /// Pose and velocities at the start.
+    pub start: (B::Pose, SVector<f64, D>),
+    /// Simulated time (s).
+    pub duration: f64,
+    /// What a step may err by.
+    pub allowed: Allowed<'a>,
+    /// Sees its motion; see [`Plant::by_desk`](crate::plant::Plant::by_desk).
+    pub see: See<'a, B::Pose, D>,
+}
+
+
+/// Where bodies are, of as many units as there are lanes.
+pub trait WidePose<P> {
+    /// All units at the same `pose`.
+    fn everywhere(pose: &P) -> Self;
+
+    /// Where those of the unit on a `lane` are.
+    fn of_unit(&self, lane: usize) -> P;
+
+    /// Puts those of the unit on a `lane` there.
+    fn put(&mut self, lane: usize, pose: &P);
+}
+
+impl<S: Real, const D: usize> WidePose<[[f64; 2]; D]> for [[S; 2]; D] {
+    fn everywhere(pose: &[[f64; 2]; D]) -> Self {
+        pose.map(|pair| pair.map(S::from_f64))
+    }
+
+    #[inline(always)]
+    fn of_unit(&self, lane: usize) -> [[f64; 2]; D] {
+        self.map(|pair| pair.map(|number| number.get(lane)))
+    }
+
+    fn put(&mut self, lane: usize, pose: &[[f64; 2]; D]) {
+        for (numbers, pair) in self.iter_mut().zip(pose) {
+            numbers.iter_mut().zip(pair).for_each(|(number, x)| number.set(lane, *x));
+        }
+    }
+}
+
+impl<S: Real, const N: usize> WidePose<[Pose<f64>; N]> for [Pose<S>; N] {
+    fn everywhere(poses: &[Pose<f64>; N]) -> Self {
+        let mut wide = [Pose::nominal(); N];
+        (0..S::UNITS).for_each(|lane| wide.put(lane, poses));
+        wide
+    }
+
+    #[inline(always)]
+    fn of_unit(&self, lane: usize) -> [Pose<f64>; N] {
+        let number = |number: S| number.get(lane);
+        self.map(|Pose { displacement_w, orientation: Orientation { w, v } }| Pose {
+            displacement_w: displacement_w.map(number),
+            orientation: Orientation { w: number(w), v: v.map(number) },
+        })
+    }
+
+    fn put(&mut self, lane: usize, poses: &[Pose<f64>; N]) {
+        for (wide, pose) in self.iter_mut().zip(poses) {
+            wide.displacement_w.iter_mut().zip(&pose.displacement_w).for_each(|(number, x)| number.set(lane, *x));
+            wide.orientation.v.iter_mut().zip(&pose.orientation.v).for_each(|(number, x)| number.set(lane, *x));
+            wide.orientation.w.set(lane, pose.orientation.w);
+        }
+    }
+}
+
+/// Numbers of some units in the registers of the instructions `V`.
+type Wide<V> = Pack<V, f64>;
+
+/// What `T` is of such numbers.
+type WideOf<V, T> = <T as Cast>::Of<Wide<V>>;
+
+/// The mechanisms of some units.
+type WideSystem<V, B, C, E> = System<WideOf<V, B>, Grouped<WideOf<V, C>, WideOf<V, E>>>;
+
+/// Whether two units have the same bodies, joints and laws, so that numbers alone differ.
+pub fn are_alike<B, C, E>(one: (&B, &Grouped<C, E>), other: (&B, &Grouped<C, E>)) -> bool
+where
+    B: Cast<Of<f64>: PartialEq>,
+    C: Cast<Of<f64>: PartialEq>,
+    E: Cast<Of<f64>: PartialEq>,
+{
+    let shape = |(bodies, elements): (&B, &Grouped<C, E>)| (bodies.cast(&mut |_| 0.0), elements.cast(&mut |_| 0.0));
+    shape(one) == shape(other)
+}
+
+/// The mechanisms of those of the `units` that are on the lanes: `sources` says which is on each.
+fn gathered<V: Simd, B, C, E, const D: usize>(
+    units: &[Unit<B, C, E, D>],
+    sources: &[usize],
+) -> WideSystem<V, B, C, E>
+where
+    B: Cast + Bodies<f64, D>,
+    C: Cast,
+    E: Cast,
+{
+    let mut numbers: Vec<Wide<V>> = Vec::new();
+    for (lane, source) in sources.iter().enumerate() {
+        let mut k = 0;
+        let mut put = |x: f64| {
+            if lane == 0 {
+                numbers.push(Wide::splat(x));
+            } else if let Some(number) = numbers.get_mut(k) {
+                number.set(lane, x);
+            }
+            k += 1;
+            x
+        };
+        let Unit { bodies, elements, .. } = &units[*source];
+        bodies.cast(&mut put);
+        elements.cast(&mut put);
+    }
+    let mut numbers = numbers.into_iter();
+    let mut next = |_| numbers.next().unwrap_or_default();
+    let Unit { bodies, elements, .. } = &units[sources[0]];
+    System::new(bodies.cast(&mut next), elements.cast(&mut next))
+}
+
+/// Fills in the contacts of the units of `system`.
+#[inline(always)]
+fn watch<S: Real, B, C, E, const D: usize>(
+    system: &System<B, Grouped<C, E>>,
+    pose: &B::Pose,
+    velocity: &SVector<S, D>,
+    gaps: &mut WideGaps<S>,
+) where
+    B: Spinning<S, D>,
+    C: Touching<S, B, D>,
+    E: Touching<S, B, D>,
+{
+    let placed = system.bodies().placed(pose, velocity);
+    gaps.spin = system.bodies().fastest(&placed);
+    gaps.contacts.clear();
+    let Grouped { lanes, rest } = system.elements();
+    let (at, mut see) = ((system.bodies(), &placed), |contact| gaps.contacts.push(contact));
+    for one in lanes.iter().flatten() {
+        one.approach(at, &mut see);
+    }
+    for one in rest {
+        one.approach(at, &mut see);
+    }
+}
+
+/// The motion of the unit on a `lane`.
+#[inline(always)]
+fn of_lane<S: Real, P, W: WidePose<P>, R, const D: usize>(
+    motion: &Motion<S, W, R, D>,
+    lane: usize,
+) -> Motion<f64, P, (), D> {
+    Motion {
+        pose: motion.pose.of_unit(lane),
+        velocity: motion.velocity.map(|rate| rate.get(lane)),
+        acceleration: motion.acceleration.map(|rate| rate.get(lane)),
+        internal: (),
+    }
+}
+
+/// The most lanes of a register.
+const MOST_LANES: usize = 8;
+
+/// Moves the `units`, which are alike, and writes what each took to `found`, of the same length. That the machine has them is what
+/// `_instructions` prove.
+#[inline(always)]
+fn integrate<V: Simd, B, C, E, const D: usize>(
+    _instructions: V,
+    units: &mut [Unit<B, C, E, D>],
+    found: &mut [Result<Effort, Stopped>],
+) where
+    B: Cast + Bodies<f64, D>,
+    C: Cast,
+    E: Cast,
+    WideOf<V, B>: Spinning<Wide<V>, D, Pose: WidePose<B::Pose>>,
+    WideOf<V, C>: Touching<Wide<V>, WideOf<V, B>, D, Internal = ()>,
+    WideOf<V, E>: Touching<Wide<V>, WideOf<V, B>, D, Internal: Default>,
+{
+    let zero = Wide::<V>::splat(0.0);
+    let lanes = Wide::<V>::LANES;
+    let Some(first) = units.first() else { return };
+    let mut sources = vec![0; lanes];
+    let mut system = gathered::<V, _, _, _, D>(units, &sources);
+    let mut motion: MotionOf<Wide<V>, WideSystem<V, B, C, E>, D> = Motion {
+        pose: WidePose::everywhere(&first.start.0),
+        velocity: SVector::zeros(),
+        acceleration: SVector::zeros(),
+        internal: Mechanism::<Wide<V>, D>::fresh(&system),
+    };
+    // Which unit is on each lane, and how far it is; none where there are no more.
+    let mut on: Vec<Option<(usize, Pace)>> = vec![None; lanes];
+    let (mut before, mut after) = (WideGaps::default(), WideGaps::default());
+    let mut next = 0;
+    let mut steps: u32 = 0;
+    loop {
+        // Puts units on the lanes that have none.
+        let mut fresh = zero;
+        for lane in 0..lanes {
+            if on[lane].is_none() && next < units.len() {
+                on[lane] = Some((next, Pace::default()));
+                sources[lane] = next;
+                let (pose, velocity) = &units[next].start;
+                motion.pose.put(lane, pose);
+                motion.velocity.iter_mut().zip(velocity).for_each(|(number, x)| number.set(lane, *x));
+                fresh.set(lane, 1.0);
+                next += 1;
+            }
+        }
+        if on.iter().all(Option::is_none) {
+            return;
+        }
+        system = gathered::<V, _, _, _, D>(units, &sources);
+        let (pose, forgotten) = (motion.pose, Mechanism::<Wide<V>, D>::fresh(&system));
+        system.accept(fresh, (&pose, &forgotten), (&mut motion.pose, &mut motion.internal));
+        watch(&system, &motion.pose, &motion.velocity, &mut after);
+        if before.contacts.len() != after.contacts.len() {
+            before.clone_from(&after);
+        }
+        before.accept(fresh, &after);
+        let least = before.least();
+        for lane in 0..lanes {
+            if let (Some((unit, _)), true) = (on[lane], fresh.get(lane) > 0.0) {
+                let Unit { see, duration, .. } = &mut units[unit];
+                let start = of_lane(&motion, lane);
+                if see(0.0, &start, None, Some(least.get(lane))).is_break() || *duration <= 0.0 {
+                    on[lane] = None;
+                }
+            }
+        }
+        let mut at_start = None;
+        while on.iter().all(|lane| lane.is_some() || next >= units.len()) && on.iter().any(Option::is_some) {
+            if steps.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
+                on.iter().flatten().for_each(|(unit, _)| found[*unit] = Err(Stopped::Interrupted));
+                found[next..].fill(Err(Stopped::Interrupted));
+                return;
+            }
+            steps = steps.wrapping_add(1);
+            let (mut t, mut length) = (zero, Wide::splat(1e-6));
+            let mut limits = [0.0; MOST_LANES];
+            for (lane, on) in on.iter().enumerate() {
+                if let Some((unit, pace)) = on {
+                    let Unit { duration, allowed, .. } = &units[*unit];
+                    let (next, limit) = pace.next(*duration, allowed.bends);
+                    t.set(lane, pace.t);
+                    length.set(lane, next);
+                    limits[lane] = limit;
+                }
+            }
+            // No closures in what is hot: they are compiled without the instructions of the function that they are in.
+            let here = match at_start {
+                Some(here) => here,
+                None => system.differentiated(t, &motion.pose, &motion.internal, &motion.velocity),
+            };
+            at_start = Some(here);
+            let (step, accelerations) = Rodas4::dense_step(&system, t, length, &motion, &here);
+            let probe = system.finiteness_probe(&step.motion.pose) + step.motion.velocity.sum() * zero;
+            let Step { residual, error, drift, motion: ref end } = step;
+            let mut good = zero;
+            for lane in 0..lanes {
+                let Some((unit, pace)) = &mut on[lane] else { continue };
+                let step = Reported { residual: residual.get(lane), error: error.get(lane), drift: drift.get(lane) };
+                let length = length.get(lane);
+                let error = (units[*unit].allowed.error)(step, length) + probe.get(lane);
+                match pace.is_good(error, length, Rodas4::ORDER) {
+                    Ok(is_good) => good.set(lane, if is_good { 1.0 } else { 0.0 }),
+                    Err(stopped) => {
+                        found[*unit] = Err(stopped);
+                        on[lane] = None;
+                    }
+                }
+            }
+            watch(&system, &end.pose, &end.velocity, &mut after);
+            let may_act = before.may_act(&after, length);
+            for lane in 0..lanes {
+                if let (Some((unit, pace)), true) = (&mut on[lane], good.get(lane) > 0.0 && may_act.get(lane) != 0.0) {
+                    let length = length.get(lane);
+                    let between = before.between(&after, lane, length, units[*unit].allowed.depth);
+                    if pace.is_shortened(between, length) {
+                        good.set(lane, 0.0);
+                    }
+                }
+            }
+            if good == zero {
+                continue;
+            }
+            at_start = None;
+            system.accept(good, (&end.pose, &end.internal), (&mut motion.pose, &mut motion.internal));
+            for (kept, new) in motion.velocity.iter_mut().zip(&end.velocity) {
+                *kept = good.select_gt(zero, *new, *kept);
+            }
+            before.accept(good, &after);
+            let (least, slack) = (before.least(), before.slack());
+            for lane in 0..lanes {
+                let (Some((unit, pace)), true) = (&mut on[lane], good.get(lane) > 0.0) else { continue };
+                let Unit { duration, allowed, see, .. } = &mut units[*unit];
+                let pushed =
+                    if slack.get(lane) > 0.0 { before.until_pushed(lane, allowed.depth) } else { f64::INFINITY };
+                pace.accept(length.get(lane), limits[lane], pushed);
+                let rates = accelerations.each_ref().map(|rates| rates.map(|rate| rate.get(lane)));
+                let flow = see(pace.t, &of_lane(&motion, lane), Some(rates), Some(least.get(lane)));
+                if flow.is_break() || pace.t >= *duration {
+                    found[*unit] = Ok(pace.effort);
+                    on[lane] = None;
+                }
+            }
+        }
+    }
+}
+
+/// Units to be moved by wide instructions.
+struct Work<'w, 'a, B: Bodies<f64, D>, C, E, const D: usize> {
+    units: &'w mut [Unit<'a, B, C, E, D>],
+    found: &'w mut [Result<Effort, Stopped>],
+}
+
+impl<const D: usize> WithSimd for Work<'_, '_, PlanarTree<f64, D>, (), PlanarElement<D>, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, instructions: V) {
+        integrate(instructions, self.units, self.found);
+    }
+}
+
+/// Moves `units` in a plane that are [alike](are_alike) and says what each took; `None` where the machine has no registers for several.
+pub fn move_in_plane<const D: usize>(
+    units: &mut [Unit<PlanarTree<f64, D>, (), PlanarElement<D>, D>],
+) -> Option<Vec<Result<Effort, Stopped>>> {
+    let mut found = vec![Ok(Effort::default()); units.len()];
+    #[cfg(target_arch = "x86_64")]
+    {
+        let work = Work { units, found: &mut found };
+        if let Some(avx512) = pulp::x86::V4::try_new() {
+            Simd::vectorize(avx512, work);
+            return Some(found);
+        }
+        if let Some(avx2) = pulp::x86::V3::try_new() {
+            Simd::vectorize(avx2, work);
+            return Some(found);
+        }
+    }
+    None
+}
