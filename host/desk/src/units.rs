@@ -4,6 +4,8 @@
 //! unit as soon as its own has come to its end. A unit has the bits that it has alone, by
 //! [`integrate`](crate::error_control::integrate).
 
+use std::ops::ControlFlow;
+
 use pulp::{Simd, WithSimd};
 use slipfit_core::{
     Cast, SVector, Scalar as _,
@@ -17,10 +19,10 @@ use slipfit_system::interrupt;
 use crate::{
     closing::WideGaps,
     element::{PlanarElement, Touching, Spinning},
-    error_control::{Effort, Pace, STEPS_PER_LOOK, Stopped},
+    error_control::{Accelerations, Effort, Pace, STEPS_PER_LOOK, Stopped},
     grouped::Grouped,
     pack::Pack,
-    plant::{Allowed, Reported, See},
+    plant::{Allowed, Reported},
     real::Real,
 };
 
@@ -36,8 +38,23 @@ pub struct Unit<'a, B: Bodies<f64, D>, C, E, const D: usize> {
     pub duration: f64,
     /// What a step may err by.
     pub allowed: Allowed<'a>,
-    /// Sees its motion; see [`Plant::by_desk`](crate::plant::Plant::by_desk).
-    pub see: See<'a, B::Pose, D>,
+    /// Who sees it move.
+    pub witness: &'a mut dyn Witness<B::Pose, D>,
+}
+
+/// Who sees a unit move.
+pub trait Witness<P, const D: usize> {
+    /// Sees the start and the end of every step, as [`See`](crate::plant::See) does.
+    fn see(
+        &mut self,
+        t: f64,
+        motion: &Motion<f64, P, (), D>,
+        accelerations: Option<Accelerations<D>>,
+        least_gap: f64,
+    ) -> ControlFlow<()>;
+
+    /// Hears what the whole motion took, or why it was stopped.
+    fn hear(&mut self, effort: Result<Effort, Stopped>);
 }
 
 
@@ -189,13 +206,11 @@ fn of_lane<S: Real, P, W: WidePose<P>, R, const D: usize>(
 /// The most lanes of a register.
 const MOST_LANES: usize = 8;
 
-/// Moves the `units`, which are alike, and writes what each took to `found`, of the same length. That the machine has them is what
-/// `_instructions` prove.
+/// Moves the `units`, which are alike. That the machine has them is what `_instructions` prove.
 #[inline(always)]
 fn integrate<V: Simd, B, C, E, const D: usize>(
     _instructions: V,
     units: &mut [Unit<B, C, E, D>],
-    found: &mut [Result<Effort, Stopped>],
 ) where
     B: Cast + Bodies<f64, D>,
     C: Cast,
@@ -248,9 +263,10 @@ fn integrate<V: Simd, B, C, E, const D: usize>(
         let least = before.least();
         for lane in 0..lanes {
             if let (Some((unit, _)), true) = (on[lane], fresh.get(lane) > 0.0) {
-                let Unit { see, duration, .. } = &mut units[unit];
+                let Unit { witness, duration, .. } = &mut units[unit];
                 let start = of_lane(&motion, lane);
-                if see(0.0, &start, None, Some(least.get(lane))).is_break() || *duration <= 0.0 {
+                if witness.see(0.0, &start, None, least.get(lane)).is_break() || *duration <= 0.0 {
+                    witness.hear(Ok(Effort::default()));
                     on[lane] = None;
                 }
             }
@@ -258,8 +274,8 @@ fn integrate<V: Simd, B, C, E, const D: usize>(
         let mut at_start = None;
         while on.iter().all(|lane| lane.is_some() || next >= units.len()) && on.iter().any(Option::is_some) {
             if steps.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
-                on.iter().flatten().for_each(|(unit, _)| found[*unit] = Err(Stopped::Interrupted));
-                found[next..].fill(Err(Stopped::Interrupted));
+                let begun = on.iter().flatten().map(|(unit, _)| *unit);
+                begun.chain(next..units.len()).for_each(|unit| units[unit].witness.hear(Err(Stopped::Interrupted)));
                 return;
             }
             steps = steps.wrapping_add(1);
@@ -292,7 +308,7 @@ fn integrate<V: Simd, B, C, E, const D: usize>(
                 match pace.is_good(error, length, Rodas4::ORDER) {
                     Ok(is_good) => good.set(lane, if is_good { 1.0 } else { 0.0 }),
                     Err(stopped) => {
-                        found[*unit] = Err(stopped);
+                        units[*unit].witness.hear(Err(stopped));
                         on[lane] = None;
                     }
                 }
@@ -320,14 +336,14 @@ fn integrate<V: Simd, B, C, E, const D: usize>(
             let (least, slack) = (before.least(), before.slack());
             for lane in 0..lanes {
                 let (Some((unit, pace)), true) = (&mut on[lane], good.get(lane) > 0.0) else { continue };
-                let Unit { duration, allowed, see, .. } = &mut units[*unit];
+                let Unit { duration, allowed, witness, .. } = &mut units[*unit];
                 let pushed =
                     if slack.get(lane) > 0.0 { before.until_pushed(lane, allowed.depth) } else { f64::INFINITY };
                 pace.accept(length.get(lane), limits[lane], pushed);
                 let rates = accelerations.each_ref().map(|rates| rates.map(|rate| rate.get(lane)));
-                let flow = see(pace.t, &of_lane(&motion, lane), Some(rates), Some(least.get(lane)));
+                let flow = witness.see(pace.t, &of_lane(&motion, lane), Some(rates), least.get(lane));
                 if flow.is_break() || pace.t >= *duration {
-                    found[*unit] = Ok(pace.effort);
+                    witness.hear(Ok(pace.effort));
                     on[lane] = None;
                 }
             }
@@ -338,7 +354,6 @@ fn integrate<V: Simd, B, C, E, const D: usize>(
 /// Units to be moved by wide instructions.
 struct Work<'w, 'a, B: Bodies<f64, D>, C, E, const D: usize> {
     units: &'w mut [Unit<'a, B, C, E, D>],
-    found: &'w mut [Result<Effort, Stopped>],
 }
 
 impl<const D: usize> WithSimd for Work<'_, '_, PlanarTree<f64, D>, (), PlanarElement<D>, D> {
@@ -346,26 +361,33 @@ impl<const D: usize> WithSimd for Work<'_, '_, PlanarTree<f64, D>, (), PlanarEle
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, instructions: V) {
-        integrate(instructions, self.units, self.found);
+        integrate(instructions, self.units);
     }
 }
 
-/// Moves `units` in a plane that are [alike](are_alike) and says what each took; `None` where the machine has no registers for several.
-pub fn move_in_plane<const D: usize>(
-    units: &mut [Unit<PlanarTree<f64, D>, (), PlanarElement<D>, D>],
-) -> Option<Vec<Result<Effort, Stopped>>> {
-    let mut found = vec![Ok(Effort::default()); units.len()];
+/// How many units of a mechanism are moved at a time, at most `most`; none where the machine has no registers for several.
+pub fn lanes(most: usize) -> Option<usize> {
     #[cfg(target_arch = "x86_64")]
     {
-        let work = Work { units, found: &mut found };
-        if let Some(avx512) = pulp::x86::V4::try_new() {
-            Simd::vectorize(avx512, work);
-            return Some(found);
+        if most >= 8 && pulp::x86::V4::try_new().is_some() {
+            return Some(8);
         }
-        if let Some(avx2) = pulp::x86::V3::try_new() {
-            Simd::vectorize(avx2, work);
-            return Some(found);
+        if most >= 4 && pulp::x86::V3::try_new().is_some() {
+            return Some(4);
         }
     }
     None
+}
+
+/// Moves `units` in a plane that are [alike](are_alike), as many at a time as there are [`lanes`].
+pub fn move_in_plane<const D: usize>(
+    lanes: usize,
+    units: &mut [Unit<PlanarTree<f64, D>, (), PlanarElement<D>, D>],
+) {
+    #[cfg(target_arch = "x86_64")]
+    match (lanes, pulp::x86::V4::try_new(), pulp::x86::V3::try_new()) {
+        (8, Some(avx512), _) => Simd::vectorize(avx512, Work { units }),
+        (_, _, Some(avx2)) => Simd::vectorize(avx2, Work { units }),
+        _ => {}
+    }
 }

@@ -42,6 +42,8 @@ pub struct Observer {
     tips: Option<Moment>,
     /// The last [`SETTLED_WINDOW`].
     window: VecDeque<Instant>,
+    /// From when (s) on that may be.
+    window_from: f64,
 }
 
 /// Whether a unit is slower than a share of its command, and since when.
@@ -81,7 +83,14 @@ impl Observer {
             below,
             tips: None,
             window,
+            window_from: f64::NEG_INFINITY,
         }
+    }
+
+    /// The same observer of a run that is known to end at `end` (s).
+    #[must_use]
+    pub fn until(self, end: f64) -> Self {
+        Self { window_from: end - SETTLED_WINDOW * (1.0 + 1e-9), ..self }
     }
 
     /// 1 or −1: the direction of the command. Speeds, forces and travel count along it.
@@ -119,6 +128,9 @@ impl Observer {
             }
         }
         self.last = Some(now);
+        if t < self.window_from {
+            return;
+        }
         self.window.push_back(now);
         // A hair early, so that rounding of the time cannot cost the first sample of the window.
         while self.window.front().is_some_and(|first| first.t < t - SETTLED_WINDOW * (1.0 + 1e-9)) {

@@ -47,10 +47,11 @@ impl BodyMotion {
     }
 }
 
-/// The bodies of a mechanism in a plane: their centres of mass, where they are drawn (m), and what turns them.
+/// The bodies of a mechanism in a plane.
 pub struct PlanarBodies<'a, const D: usize> {
     tree: &'a PlanarTree<f64, D>,
-    bodies: Vec<(Point<f64, D>, Vector2<f64>, Option<usize>)>,
+    /// Of each body its centre of mass, where that is drawn (m), and what turns it.
+    pub bodies: Vec<(Point<f64, D>, Vector2<f64>, Option<usize>)>,
 }
 
 impl<'a, const D: usize> PlanarBodies<'a, D> {
@@ -186,18 +187,6 @@ pub fn spatial<const D: usize>(state: &State<D>, told: &mut Vec<BodyMotion>) {
     told.extend((0..D).step_by(6).map(body));
 }
 
-/// Two vectors along an axis.
-trait AlongAxis {
-    fn along(self, axis: [f64; 3]) -> (f64, f64);
-}
-
-impl AlongAxis for (&Vector3<f64>, &Vector3<f64>) {
-    fn along(self, axis: [f64; 3]) -> (f64, f64) {
-        let axis = Vector3::from(axis);
-        (self.0.dot(&axis), self.1.dot(&axis))
-    }
-}
-
 /// Place and angle of a body in a plane, and how fast they change.
 const IN_A_PLANE: [&str; 6] = ["x (m)", "y (m)", "angle (rad)", "vx (m/s)", "vy (m/s)", "spin (rad/s)"];
 
@@ -233,16 +222,9 @@ impl Mechanism {
     /// and angle about it.
     pub fn drives_at<'a>(&'a self, t: f64, motions: &'a [BodyMotion]) -> impl Iterator<Item = Instant> + 'a {
         self.drives.iter().map(move |named| {
-            let motion = &motions[named.body];
-            let (vz, z) = match named.action {
-                Action::Pushes { axis } => {
-                    let lever = if named.at_centre { Vector3::zeros() } else { named.drive.point_b };
-                    let turned = motion.orientation * lever;
-                    let velocity = motion.velocity + motion.spin.cross(&turned);
-                    (&velocity, &(motion.displacement + (turned - lever))).along(axis)
-                }
-                Action::Turns { axis } => (&motion.spin, &motion.turned).along(axis),
-            };
+            let BodyMotion { displacement, orientation, turned, velocity, spin, .. } = motions[named.body];
+            let arms = named.arms(|lever| orientation * lever);
+            let [vz, z] = named.sees([velocity, spin], displacement, arms, || turned);
             Instant { t, vz, force: named.effort(t, vz), z }
         })
     }

@@ -1,5 +1,6 @@
 //! Drives of a mechanism: what they act on, what they are commanded, and the friction of their drive trains.
 
+use nalgebra::Vector3;
 use slipfit_core::{
     ParameterError,
     drive::{Commanded, Drive, Push, TrainData},
@@ -125,6 +126,47 @@ impl NamedDrive {
                 self.rotor * mechanism.gravity.iter().zip(axis).map(|(gravity, axis)| gravity * axis).sum::<f64>()
             }
             Action::Turns { .. } => 0.0,
+        }
+    }
+
+    /// From the centre of mass of its body to the point whose speed it controls (m): in the drawn pose, and as `turned` turns it.
+    pub fn arms(&self, turned: impl Fn(Vector3<f64>) -> Vector3<f64>) -> [Vector3<f64>; 2] {
+        let lever = if self.at_centre { Vector3::zeros() } else { self.drive.point_b };
+        [lever, turned(lever)]
+    }
+
+    /// Speed and place that it sees (m/s and m, rad/s and rad), where its body has these velocities, of its centre of mass and of its
+    /// turning, and has moved by `displacement` (m) and turned by `turned` (rad).
+    pub fn sees(
+        &self,
+        [velocity, spin]: [Vector3<f64>; 2],
+        displacement: Vector3<f64>,
+        [lever, arm]: [Vector3<f64>; 2],
+        turned: impl FnOnce() -> Vector3<f64>,
+    ) -> [f64; 2] {
+        let axis = Vector3::from(self.action.axis());
+        match self.action {
+            Action::Pushes { .. } => {
+                [(velocity + spin.cross(&arm)).dot(&axis), (displacement + (arm - lever)).dot(&axis)]
+            }
+            Action::Turns { .. } => [spin.dot(&axis), turned().dot(&axis)],
+        }
+    }
+
+    /// How fast (m/s², rad/s²) the speed that it sees changes, by the accelerations of its body likewise.
+    pub fn feels(&self, [centre, turning]: [Vector3<f64>; 2], spin: Vector3<f64>, arm: Vector3<f64>) -> f64 {
+        let axis = Vector3::from(self.action.axis());
+        match self.action {
+            Action::Pushes { .. } => (centre + turning.cross(&arm) + spin.cross(&spin.cross(&arm))).dot(&axis),
+            Action::Turns { .. } => turning.dot(&axis),
+        }
+    }
+
+    /// How much faster (m/s) the point where it acts goes along its axis than the one whose speed it controls.
+    pub fn beyond(&self, spin: Vector3<f64>, turned: impl Fn(Vector3<f64>) -> Vector3<f64>) -> f64 {
+        match self.action {
+            Action::Pushes { axis } if self.at_centre => spin.cross(&turned(self.drive.point_b)).dot(&Vector3::from(axis)),
+            _ => 0.0,
         }
     }
 

@@ -5,30 +5,30 @@
 
 use nalgebra::Vector3;
 
-use super::{Action, JointKind, Mechanism, columns::BodyMotion, joint_elements::joints_of_elements};
-use crate::dynamics::observer::Instant;
+use slipfit_core::system::spatial::PlacedBody;
+
+use super::{JointKind, Mechanism, columns::BodyMotion, joint_elements::joints_of_elements};
 
 /// The energy, as a share of the greatest one, that a run may have beyond what was supplied.
 pub const ENERGY: f64 = 0.01;
 
 /// The energy account of a run (J).
-pub struct Energies<'a> {
-    mechanism: &'a Mechanism,
+pub struct Energies {
     /// What was stored at the start: in motion and height, and in pressed contacts and turned springs.
     start: f64,
-    /// Work of each drive.
-    work: Vec<f64>,
-    /// Time (s) and power (W) of each drive when it was seen last.
-    last: (f64, Vec<f64>),
-    /// The greatest of what there was to spend, and of what there was too much of it.
-    spent: f64,
-    excess: f64,
+    /// The latter.
+    stored: f64,
 }
 
-impl<'a> Energies<'a> {
-    /// Of a run of `mechanism` that starts with these `motions`; `pressed` are the gaps (m) of its elements there, as far as they are
-    /// contacts.
-    pub fn new(mechanism: &'a Mechanism, motions: &[BodyMotion], pressed: impl Iterator<Item = Option<f64>>) -> Self {
+impl Energies {
+    /// Of a run of `mechanism` that starts with these `motions` and this `energy` of motion and height; `pressed` are the gaps (m) of its
+    /// elements there, as far as they are contacts.
+    pub fn new(
+        mechanism: &Mechanism,
+        motions: &[BodyMotion],
+        energy: [f64; 2],
+        pressed: impl Iterator<Item = Option<f64>>,
+    ) -> Self {
         let contacts = pressed.zip(joints_of_elements(mechanism)).filter_map(|(gap, joint)| {
             let ([stiffness, exponent], depth) = (joint?.laws.contact.spring(), -gap?);
             // Of a pin the deepest of its four walls is known.
@@ -38,60 +38,54 @@ impl<'a> Energies<'a> {
         });
         let springs = mechanism.springs.iter().map(|spring| spring.energy(mechanism, motions));
         let stored: f64 = contacts.chain(springs).sum();
-        let start = mechanism.energy(motions).iter().sum::<f64>() + stored;
-        let count = mechanism.drives.len();
-        Self { mechanism, start, work: vec![0.0; count], last: (0.0, vec![0.0; count]), spent: stored, excess: 0.0 }
+        Self { start: energy.iter().sum::<f64>() + stored, stored }
     }
 
-    /// Takes note of the `motions` and the `drives` at time `t` (s). Times ascend.
-    pub fn observe(&mut self, t: f64, motions: &[BodyMotion], drives: &[Instant]) {
-        let length = t - self.last.0;
-        for (k, (named, at)) in self.mechanism.drives.iter().zip(drives).enumerate() {
-            let motion = &motions[named.body];
-            let speed = match named.action {
-                Action::Turns { .. } => at.vz,
-                Action::Pushes { axis } => {
-                    let point = motion.orientation * named.drive.point_b;
-                    (motion.velocity + motion.spin.cross(&point)).dot(&Vector3::from(axis))
-                }
-            };
-            // An offset of the drive train works like a force.
-            let offset = named.train.map_or(0.0, |train| train.offset);
-            let power = (at.force - offset) * speed;
-            self.work[k] += 0.5 * length * (power + self.last.1[k]);
-            self.last.1[k] = power;
+    /// The energy that nothing supplied, as a share of the greatest that there was, of a run at the ends of whose steps bodies have these
+    /// energies of motion and height, and drives have done this work.
+    pub fn excess(&self, at_knots: impl Iterator<Item = ([f64; 2], f64)>) -> f64 {
+        let (mut spent, mut excess) = (self.stored, 0.0);
+        for ([moving, height], work) in at_knots {
+            // What falls, or swings, spends its height, although the sum of both does not change.
+            spent = [self.start, work, moving, height].into_iter().fold(spent, |most, one| most.max(one.abs()));
+            // A NaN is no energy that anything supplied.
+            let too_much = moving + height - self.start - work;
+            if too_much > excess || too_much.is_nan() {
+                excess = too_much;
+            }
         }
-        self.last.0 = t;
-        let work: f64 = self.work.iter().sum();
-        // What falls, or swings, spends its height, although the sum of both does not change.
-        let [moving, height] = self.mechanism.energy(motions);
-        let energy = moving + height;
-        let all = [self.start, work, moving, height].into_iter().fold(self.spent, |most, one| most.max(one.abs()));
-        self.spent = all;
-        // A NaN is no energy that anything supplied.
-        let excess = energy - self.start - work;
-        if excess > self.excess || excess.is_nan() {
-            self.excess = excess;
-        }
-    }
-
-    /// The energy that nothing supplied, as a share of the greatest energy that there was.
-    pub fn excess(&self) -> f64 {
-        if self.excess == 0.0 { 0.0 } else { self.excess / self.spent.max(f64::MIN_POSITIVE) }
+        if excess == 0.0 { 0.0 } else { excess / spent.max(f64::MIN_POSITIVE) }
     }
 }
 
 impl Mechanism {
-    /// Energy (J) of motion, and of height against gravity from the drawn pose.
-    fn energy(&self, motions: &[BodyMotion]) -> [f64; 2] {
+    /// Energy (J) of motion, and of height against gravity from the drawn pose, of `bodies`.
+    pub fn energy(&self, bodies: &[PlacedBody<f64>]) -> [f64; 2] {
         let gravity = Vector3::from(self.gravity);
-        let each = self.bodies.iter().zip(motions).enumerate().map(|(k, (body, motion))| {
+        let each = self.bodies.iter().zip(bodies).enumerate().map(|(k, (body, at))| {
             let (moved, inertia) = self.moved_with(k);
-            // In a plane axes of body and frame share the one that counts.
-            let spin_b = if self.planar { motion.spin } else { motion.orientation.inverse() * motion.spin };
-            let turning: f64 = spin_b.iter().zip(inertia).map(|(spin, inertia)| inertia * spin * spin).sum();
-            [0.5 * (moved * motion.velocity.norm_squared() + turning), -body.mass * gravity.dot(&motion.displacement)]
+            let turning: f64 = at.rotation_b.iter().zip(inertia).map(|(spin, inertia)| inertia * spin * spin).sum();
+            let height = -body.mass * gravity.dot(&at.displacement_w);
+            [0.5 * (moved * at.velocity_w.norm_squared() + turning), height]
         });
         each.fold([0.0, 0.0], |[moving, height], [of_motion, of_height]| [moving + of_motion, height + of_height])
+    }
+}
+
+/// The work (J) of a drive.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Work {
+    /// Up to when it was seen last.
+    pub done: f64,
+    /// When (s) that was, and its power (W) then.
+    last: [f64; 2],
+}
+
+impl Work {
+    /// Takes note of its `power` (W) at time `t` (s). Times ascend.
+    pub fn observe(&mut self, t: f64, power: f64) {
+        let [before, power_before] = self.last;
+        self.done += 0.5 * (t - before) * (power + power_before);
+        self.last = [t, power];
     }
 }

@@ -14,6 +14,7 @@ const STICK_BANDS: f64 = 4.0;
 const SLOWEST: f64 = 1e-3;
 
 /// What a step may err by.
+#[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Speed (m/s).
     pub speed: f64,

@@ -2,20 +2,22 @@
 //!
 //! A unit has the bits that it has alone.
 
-use std::time::Instant;
+use std::{ops::ControlFlow, time::Duration};
 
+use slipfit_core::{SVector, integrator::Motion, system::Bodies as _};
 use slipfit_desk::{
+    error_control::{Effort, Stopped},
     grouped::Grouped,
     plant::{Allowed, Reported},
-    units::{self, Unit},
+    units::{self, Unit, Witness},
 };
 
 use super::{
-    Mechanism, Mounts, RunError,
+    Mechanism, Mounts, NamedDrive, RunError,
     bends::bends,
     record::MechanismRun,
     recorder::Recorder,
-    run::{PlanarUnit, run},
+    run::{PlanarUnit, judged},
 };
 
 /// One unit of a production.
@@ -29,86 +31,102 @@ pub struct Made {
 /// The most pieces of a command with which units share their steps: each looks at all of them.
 const MOST_PIECES: usize = 16;
 
-/// Runs `made` units and tells of each every `every` (s): what [`run`] says of each.
-pub fn run_many(made: &[Made], every: f64) -> Vec<Result<MechanismRun, RunError>> {
-    let shared = made.first().and_then(|first| {
-        let mechanism = &first.mechanism;
-        if made.len() == 1 || !mechanism.planar || !mechanism.drives.iter().all(shares) {
-            return None;
-        }
-        match Mounts::of(mechanism).ok()?.coordinates().len() {
-            3 => in_plane::<3>(made, every),
-            _ => None,
-        }
-    });
-    shared.unwrap_or_else(|| made.iter().map(|Made { mechanism, gaps }| run(mechanism, gaps, every)).collect())
+/// Runs `made` units, at most `lanes` at a time on one thread. Of none is told how it moves.
+pub fn run_many(made: &[Made], lanes: usize) -> Vec<Result<MechanismRun, RunError>> {
+    let lanes = made.first().filter(|first| shares(&first.mechanism)).and_then(|_| units::lanes(lanes));
+    let together = lanes.and_then(|lanes| in_plane_by_dimension(made, lanes));
+    together.unwrap_or_else(|| made.iter().map(alone).collect())
 }
 
-/// Whether units with this drive share their steps: controllers that sample hold what they hold.
-fn shares(drive: &super::NamedDrive) -> bool {
-    drive.sampling.is_none() && drive.command.as_ref().is_none_or(|command| command.pieces.0.len() <= MOST_PIECES)
+fn alone(Made { mechanism, gaps }: &Made) -> Result<MechanismRun, RunError> {
+    judged(mechanism, gaps)
 }
 
-fn in_plane<const D: usize>(made: &[Made], every: f64) -> Option<Vec<Result<MechanismRun, RunError>>> {
-    let ready: Vec<Result<_, RunError>> = made
-        .iter()
-        .map(|Made { mechanism, gaps }| {
-            let mounts = Mounts::of(mechanism)?;
-            Ok((PlanarUnit::<D>::new(mechanism, &mounts, gaps)?, mounts, bends(mechanism)))
+/// Whether units of `mechanism` share their steps: what a controller that samples holds is not known to others.
+fn shares(mechanism: &Mechanism) -> bool {
+    mechanism.planar
+        && mechanism.drives.iter().all(|NamedDrive { sampling, command, .. }| {
+            sampling.is_none() && command.as_ref().is_none_or(|command| command.pieces.0.len() <= MOST_PIECES)
+        })
+}
+
+/// Runs units in a plane; `None` where none of them has coordinates.
+fn in_plane_by_dimension(made: &[Made], lanes: usize) -> Option<Vec<Result<MechanismRun, RunError>>> {
+    let mounts: Vec<Mounts> = made.iter().map(|made| Mounts::of(&made.mechanism).ok()).collect::<Option<_>>()?;
+    Some(match mounts.first()?.coordinates().len() {
+        3 => in_plane::<3>(made, &mounts, lanes),
+        _ => return None,
+    })
+}
+
+fn in_plane<const D: usize>(made: &[Made], mounts: &[Mounts], lanes: usize) -> Vec<Result<MechanismRun, RunError>> {
+    let all = || made.iter().zip(mounts);
+    let ready: Vec<_> =
+        all().map(|(made, mounts)| PlanarUnit::<D>::new(&made.mechanism, mounts, &made.gaps).ok()).collect();
+    let bends: Vec<_> = made.iter().map(|made| bends(&made.mechanism)).collect();
+    let error = |unit: &PlanarUnit<D>| {
+        let (speed, least_mass) = (unit.limits, unit.tree.least_mass());
+        move |step: Reported, length: f64| speed.error(&step, length, least_mass)
+    };
+    let errors: Vec<_> = ready.iter().map(|ready| ready.as_ref().map(error)).collect();
+    let mut witnesses: Vec<Option<Judge<_, D>>> = all()
+        .zip(&ready)
+        .map(|((Made { mechanism, .. }, mounts), ready)| {
+            let unit = ready.as_ref()?;
+            let told = Box::new(unit.told(mechanism, mounts));
+            Some(Judge::Watches(Some(Recorder::new(mechanism, told, &unit.start, &unit.limits, false))))
         })
         .collect();
-    let elements: Vec<_> =
-        ready.iter().map(|ready| ready.as_ref().ok().map(|(unit, ..)| Grouped::none(unit.elements.clone()))).collect();
-    let first = ready.iter().zip(&elements).find_map(|(ready, elements)| Some((&ready.as_ref().ok()?.0.tree, elements.as_ref()?)))?;
-    let alike: Vec<bool> = ready
-        .iter()
-        .zip(&elements)
-        .map(|(ready, elements)| match (ready, elements) {
-            (Ok((unit, ..)), Some(elements)) => units::are_alike(first, (&unit.tree, elements)),
-            _ => false,
-        })
-        .collect();
-    let together = || made.iter().zip(&ready).zip(&alike).filter(|(_, alike)| **alike).filter_map(|((made, ready), _)| Some((made, ready.as_ref().ok()?)));
-    let mut recorders: Vec<_> = together()
-        .map(|(Made { mechanism, .. }, (unit, mounts, _))| {
-            Recorder::new(mechanism, Box::new(unit.told(mechanism, mounts)), &unit.start, &unit.limits)
-        })
-        .collect();
-    let errors: Vec<_> = together()
-        .map(|(_, (unit, ..))| {
-            let least_mass = slipfit_core::system::Bodies::least_mass(&unit.tree);
-            move |step: Reported, length: f64| unit.limits.error(&step, length, least_mass)
-        })
-        .collect();
-    let mut sees: Vec<_> = recorders
-        .iter_mut()
-        .map(|recorder| move |t: f64, motion: &_, accelerations, gap| recorder.keep(t, motion, accelerations, gap))
-        .collect();
-    let elements = elements.into_iter().zip(&alike).filter(|(_, alike)| **alike).filter_map(|(elements, _)| elements);
-    let mut units: Vec<_> = together()
-        .zip(elements)
-        .zip(&errors)
-        .zip(&mut sees)
-        .map(|((((Made { mechanism, .. }, (unit, _, bends)), elements), error), see)| Unit {
-            bodies: unit.tree,
-            elements,
-            start: unit.start,
-            duration: mechanism.run.duration,
-            allowed: Allowed { error, depth: unit.limits.place(), bends },
-            see,
-        })
-        .collect();
-    let clock = Instant::now();
-    let efforts = units::move_in_plane(&mut units)?;
-    let time = clock.elapsed() / efforts.len().max(1) as u32;
+    let mut units: Vec<Unit<_, (), _, D>> = Vec::new();
+    for (k, (((ready, error), witness), bends)) in ready.iter().zip(&errors).zip(&mut witnesses).zip(&bends).enumerate() {
+        let (Some(unit), Some(error), Some(witness)) = (ready, error, witness) else { continue };
+        let elements = Grouped::none(unit.elements.clone());
+        // What is not like the others runs alone.
+        if units.first().is_none_or(|first| units::are_alike((&first.bodies, &first.elements), (&unit.tree, &elements))) {
+            units.push(Unit {
+                bodies: unit.tree,
+                elements,
+                start: unit.start,
+                duration: made[k].mechanism.run.duration,
+                allowed: Allowed { error, depth: unit.limits.place(), bends },
+                witness,
+            });
+        }
+    }
+    units::move_in_plane(lanes, &mut units);
     drop(units);
-    drop(sees);
-    let mut moved = recorders.into_iter().zip(efforts);
-    let found = made.iter().zip(&alike).map(|(Made { mechanism, gaps }, alike)| {
-        match if *alike { moved.next() } else { None } {
-            Some((recorder, effort)) => Ok(recorder.finished(effort, time, (every, 0))?),
-            None => run(mechanism, gaps, every),
-        }
+    let found = made.iter().zip(witnesses).map(|(made, witness)| match witness {
+        Some(Judge::Has(run)) => Ok(run?),
+        _ => alone(made),
     });
-    Some(found.collect())
+    found.collect()
+}
+
+/// What makes a run of a motion as soon as it has ended, so that no more of it is kept than of a few units.
+enum Judge<'a, P, const D: usize> {
+    Watches(Option<Recorder<'a, P, D>>),
+    Has(Result<MechanismRun, Stopped>),
+}
+
+impl<P: Copy, const D: usize> Witness<P, D> for Judge<'_, P, D> {
+    fn see(
+        &mut self,
+        t: f64,
+        motion: &Motion<f64, P, (), D>,
+        accelerations: Option<[SVector<f64, D>; 2]>,
+        least_gap: f64,
+    ) -> ControlFlow<()> {
+        match self {
+            Self::Watches(Some(recorder)) => recorder.keep(t, motion, accelerations, Some(least_gap)),
+            _ => ControlFlow::Break(()),
+        }
+    }
+
+    fn hear(&mut self, steps: Result<Effort, Stopped>) {
+        if let Self::Watches(recorder) = self
+            && let Some(recorder) = recorder.take()
+        {
+            *self = Self::Has(recorder.finished(steps, Duration::ZERO, None));
+        }
+    }
 }

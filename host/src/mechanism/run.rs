@@ -22,7 +22,7 @@ use super::{
     limits::Limits,
     planar,
     record::MechanismRun,
-    recorder::Recorder,
+    recorder::{Recorder, Telling},
     spatial,
     start::thrown,
     state::half_angle,
@@ -35,7 +35,7 @@ use crate::setup::ControllerSpec;
 /// # Errors
 /// See [`RunError`].
 pub fn run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
-    run_by(mechanism, gaps, By { every, controller: None, moments: 0 })
+    run_by(mechanism, gaps, By { controller: None, told: Some(Telling { every, moments: 0 }) })
 }
 
 /// The same with about `count` moments of the motion, half of them evenly spread over the steps, which are short where much
@@ -44,7 +44,7 @@ pub fn run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismR
 /// # Errors
 /// See [`RunError`].
 pub fn film(mechanism: &Mechanism, gaps: &[f64], count: usize) -> Result<MechanismRun, RunError> {
-    run_by(mechanism, gaps, By { every: mechanism.run.duration, controller: None, moments: count })
+    run_by(mechanism, gaps, By { controller: None, told: Some(Telling { every: mechanism.run.duration, moments: count }) })
 }
 
 /// The same by the steps of its controller, in double precision. Only implicit schemes are known; implicit Euler stands for the
@@ -53,7 +53,15 @@ pub fn film(mechanism: &Mechanism, gaps: &[f64], count: usize) -> Result<Mechani
 /// # Errors
 /// See [`RunError`].
 pub fn controller_run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
-    run_by(mechanism, gaps, By { every, controller: Some(mechanism.controller), moments: 0 })
+    run_by(mechanism, gaps, By { controller: Some(mechanism.controller), told: Some(Telling { every, moments: 0 }) })
+}
+
+/// What the run of the unit of `mechanism` with the given `gaps` (m) is judged by: nothing is told of how it moves.
+///
+/// # Errors
+/// See [`RunError`].
+pub(super) fn judged(mechanism: &Mechanism, gaps: &[f64]) -> Result<MechanismRun, RunError> {
+    run_by(mechanism, gaps, By { controller: None, told: None })
 }
 
 fn run_by(mechanism: &Mechanism, gaps: &[f64], by: By) -> Result<MechanismRun, RunError> {
@@ -91,12 +99,9 @@ fn run_by(mechanism: &Mechanism, gaps: &[f64], by: By) -> Result<MechanismRun, R
 /// How a unit is computed and told of.
 #[derive(Clone, Copy)]
 struct By {
-    /// Time (s) between two samples.
-    every: f64,
     /// A controller's steps; the desk's, if there are none.
     controller: Option<ControllerSpec>,
-    /// Moments that show the motion.
-    moments: usize,
+    told: Option<Telling>,
 }
 
 /// One unit in a plane, ready to be moved.
@@ -189,7 +194,7 @@ fn solve<P: Plant<D>, const D: usize>(
     by: By,
 ) -> Result<MechanismRun, RunError> {
     let least_mass = desk.least_mass();
-    let mut recorder = Recorder::new(mechanism, told, &start, limits);
+    let mut recorder = Recorder::new(mechanism, told, &start, limits, by.told.is_some());
     let (duration, bends) = (mechanism.run.duration, bends(mechanism));
     let mut keep = |t: f64, motion: &_, accelerations, gap| recorder.keep(t, motion, accelerations, gap);
     let clock = Instant::now();
@@ -202,5 +207,5 @@ fn solve<P: Plant<D>, const D: usize>(
             desk.by_controller(start, duration, (integrator, step), &mut keep)
         }
     };
-    Ok(recorder.finished(effort, clock.elapsed(), (by.every, by.moments))?)
+    Ok(recorder.finished(effort, clock.elapsed(), by.told)?)
 }

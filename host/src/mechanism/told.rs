@@ -1,20 +1,38 @@
 //! How bodies of each kind are kept and told of: in a plane, free in space, and on ideal joints in space.
 
+use nalgebra::{Matrix3, Vector2, Vector3};
 use slipfit_core::{
     SVector,
     pose::Pose,
-    system::{Bodies, Reduced, planar::PlanarTree, spatial::{FreeBodies, tree::SpatialTree}},
+    system::{
+        Bodies, Reduced,
+        planar::{At, PlanarTree, Placed as InPlanePlaced, Point},
+        spatial::{FreeBodies, PlacedBody, tree::{Placed as OnJointsPlaced, SpatialTree}},
+    },
 };
+use slipfit_desk::element::next_to;
 
 use super::{
     Mechanism, Mounts,
     columns::{self, BodyMotion, JointedBodies, PlanarBodies},
     element::{PlanarElement, SpatialElement},
-    state::State,
+    state::{State, half_angle, whole_angle},
 };
 
 /// What is made of the poses `P` of some bodies with `D` coordinates.
 pub(super) trait Told<P, const D: usize> {
+    /// Looks at the bodies at a `pose` and a `velocity` that come after the last ones.
+    fn look(&mut self, pose: &P, velocity: &SVector<f64, D>);
+
+    /// The bodies where they were looked at last.
+    fn bodies(&self) -> &[PlacedBody<f64>];
+
+    /// How much (rad) a body has turned there about the axes of the frame, see [`BodyMotion::turned`].
+    fn turned(&mut self, body: usize) -> Vector3<f64>;
+
+    /// The accelerations of a body there, of its centre of mass (m/s²) and of its turning (rad/s²), where its coordinates have these.
+    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> [Vector3<f64>; 2];
+
     /// The state at a `pose` and `rates` that come after the last ones.
     fn state(&mut self, pose: &P, rates: [f64; D]) -> State<D>;
 
@@ -30,6 +48,11 @@ pub(super) struct InPlane<'a, const D: usize> {
     tree: &'a PlanarTree<f64, D>,
     elements: &'a [PlanarElement<D>],
     bodies: PlanarBodies<'a, D>,
+    pose: [[f64; 2]; D],
+    placed: InPlanePlaced<f64, D>,
+    looked: Vec<PlacedBody<f64>>,
+    /// Angles (rad) of the coordinates when they were asked for last.
+    angles: [f64; D],
     last: [f64; D],
 }
 
@@ -42,11 +65,63 @@ impl<'a, const D: usize> InPlane<'a, D> {
         elements: &'a [PlanarElement<D>],
         start: [f64; D],
     ) -> Self {
-        Self { tree, elements, bodies: PlanarBodies::of(mechanism, mounts, tree), last: start }
+        let pose = tree.pose(start, half_angle);
+        Self {
+            tree,
+            elements,
+            bodies: PlanarBodies::of(mechanism, mounts, tree),
+            pose,
+            placed: tree.placed(&pose, &SVector::zeros()),
+            looked: Vec::new(),
+            angles: start,
+            last: start,
+        }
     }
 }
 
 impl<const D: usize> Told<[[f64; 2]; D], D> for InPlane<'_, D> {
+    fn look(&mut self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>) {
+        self.pose = *pose;
+        self.placed = self.tree.placed(pose, velocity);
+        let (tree, placed) = (self.tree, &self.placed);
+        let body = |(centre, drawn, turn): &(Point<f64, D>, Vector2<f64>, Option<usize>)| {
+            let [place, velocity] = tree.motion_of(centre, placed);
+            let moved = place - drawn;
+            let axis = turn.map_or(Vector2::new(1.0, 0.0), |turn| placed.axes[turn]);
+            let rotation = Vector3::z() * turn.map_or(0.0, |turn| placed.rates[turn]);
+            PlacedBody {
+                to_frame: Matrix3::new(axis.x, -axis.y, 0.0, axis.y, axis.x, 0.0, 0.0, 0.0, 1.0),
+                displacement_w: Vector3::new(moved.x, moved.y, 0.0),
+                velocity_w: Vector3::new(velocity.x, velocity.y, 0.0),
+                rotation_b: rotation,
+                rotation_w: rotation,
+            }
+        };
+        self.looked.clear();
+        self.looked.extend(self.bodies.bodies.iter().map(body));
+    }
+
+    fn bodies(&self) -> &[PlacedBody<f64>] {
+        &self.looked
+    }
+
+    fn turned(&mut self, body: usize) -> Vector3<f64> {
+        let Some(turn) = self.bodies.bodies[body].2 else { return Vector3::zeros() };
+        self.angles[turn] = next_to(whole_angle(self.pose[turn]), self.angles[turn]);
+        Vector3::z() * self.angles[turn]
+    }
+
+    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> [Vector3<f64>; 2] {
+        let (centre, _, turn) = &self.bodies.bodies[body];
+        let (topology, placed) = (self.tree.topology(), &self.placed);
+        let at = At::of(topology, centre, placed);
+        let swept = at.swept(topology, placed, &placed.rates);
+        let of = at.velocity(of_coordinates);
+        let moved = swept.iter().zip(&placed.rates).fold(of, |sum, (column, rate)| sum + column * *rate);
+        let turning = turn.map_or(0.0, |turn| of_coordinates[turn]);
+        [Vector3::new(moved.x, moved.y, 0.0), Vector3::z() * turning]
+    }
+
     fn state(&mut self, pose: &[[f64; 2]; D], rates: [f64; D]) -> State<D> {
         let state = State::planar(self.tree.topology(), pose, rates, &self.last);
         self.last = state.places;
@@ -67,17 +142,41 @@ impl<const D: usize> Told<[[f64; 2]; D], D> for InPlane<'_, D> {
 pub(super) struct InSpace<'a, const N: usize, const D: usize> {
     bodies: &'a FreeBodies<f64, N, D>,
     elements: &'a [SpatialElement],
+    at: ([Pose<f64>; N], SVector<f64, D>),
+    looked: [PlacedBody<f64>; N],
     last: State<D>,
 }
 
 impl<'a, const N: usize, const D: usize> InSpace<'a, N, D> {
     /// These `bodies`.
     pub fn new(bodies: &'a FreeBodies<f64, N, D>, elements: &'a [SpatialElement]) -> Self {
-        Self { bodies, elements, last: State::at_rest([0.0; D]) }
+        let at = (bodies.nominal(), SVector::zeros());
+        let looked = bodies.placed(&at.0, &at.1).bodies;
+        Self { bodies, elements, at, looked, last: State::at_rest([0.0; D]) }
     }
 }
 
 impl<const N: usize, const D: usize> Told<[Pose<f64>; N], D> for InSpace<'_, N, D> {
+    fn look(&mut self, poses: &[Pose<f64>; N], velocity: &SVector<f64, D>) {
+        self.at = (*poses, *velocity);
+        self.looked = self.bodies.placed(poses, velocity).bodies;
+    }
+
+    fn bodies(&self) -> &[PlacedBody<f64>] {
+        &self.looked
+    }
+
+    fn turned(&mut self, body: usize) -> Vector3<f64> {
+        let (poses, velocity) = self.at;
+        let state = self.state(&poses, velocity.into());
+        Vector3::from_column_slice(&state.places[6 * body + 3..6 * body + 6])
+    }
+
+    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> [Vector3<f64>; 2] {
+        let of = |k: usize| Vector3::new(of_coordinates[k], of_coordinates[k + 1], of_coordinates[k + 2]);
+        [of(6 * body), self.looked[body].to_frame * of(6 * body + 3)]
+    }
+
     fn state(&mut self, poses: &[Pose<f64>; N], rates: [f64; D]) -> State<D> {
         self.last = State::spatial(poses, rates, &self.last);
         self.last
@@ -98,6 +197,9 @@ pub(super) struct OnJoints<'a, const N: usize, const W: usize, const D: usize> {
     tree: &'a SpatialTree<f64, N, W, D>,
     elements: &'a [SpatialElement],
     bodies: &'a JointedBodies<N, W, D>,
+    at: ([[f64; 2]; D], SVector<f64, D>),
+    placed: OnJointsPlaced<f64, N, W, D>,
+    motions: Vec<BodyMotion>,
     last: State<D>,
 }
 
@@ -109,11 +211,35 @@ impl<'a, const N: usize, const W: usize, const D: usize> OnJoints<'a, N, W, D> {
         bodies: &'a JointedBodies<N, W, D>,
         start: [f64; D],
     ) -> Self {
-        Self { tree, elements, bodies, last: State::at_rest(start) }
+        let at = (tree.nominal(), SVector::zeros());
+        let placed = tree.placed(&at.0, &at.1);
+        Self { tree, elements, bodies, at, placed, motions: Vec::new(), last: State::at_rest(start) }
     }
 }
 
 impl<const N: usize, const W: usize, const D: usize> Told<[[f64; 2]; D], D> for OnJoints<'_, N, W, D> {
+    fn look(&mut self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>) {
+        self.at = (*pose, *velocity);
+        self.placed = self.tree.placed(pose, velocity);
+    }
+
+    fn bodies(&self) -> &[PlacedBody<f64>] {
+        &self.placed.free.bodies
+    }
+
+    fn turned(&mut self, body: usize) -> Vector3<f64> {
+        let (pose, velocity) = self.at;
+        let state = self.state(&pose, velocity.into());
+        let mut motions = std::mem::take(&mut self.motions);
+        self.tell(&state, &mut motions);
+        self.motions = motions;
+        self.motions[body].turned
+    }
+
+    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> [Vector3<f64>; 2] {
+        self.tree.accelerations(&self.placed, of_coordinates)[body]
+    }
+
     fn state(&mut self, pose: &[[f64; 2]; D], rates: [f64; D]) -> State<D> {
         self.last = State::on_joints(self.tree, pose, rates, &self.last);
         self.last

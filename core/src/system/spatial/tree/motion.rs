@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// A vector of each body: of its centre of mass, and of its turning.
-pub(super) type Pairs<S, const N: usize> = [[Vector3<S>; 2]; N];
+pub type Pairs<S, const N: usize> = [[Vector3<S>; 2]; N];
 
 impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N, W, D> {
     /// Where the bodies are in `pose`, and how fast they move by the `rates` of the coordinates.
@@ -127,7 +127,7 @@ impl<S: Scalar, const N: usize, const W: usize, const D: usize> SpatialTree<S, N
 
     /// Accelerations of the centres of mass (m/s²) and of turning (rad/s²), where those of the coordinates are `of_coordinates`.
     #[inline(never)]
-    pub(super) fn accelerations(&self, placed: &Placed<S, N, W, D>, of_coordinates: &SVector<S, D>) -> Pairs<S, N> {
+    pub fn accelerations(&self, placed: &Placed<S, N, W, D>, of_coordinates: &SVector<S, D>) -> Pairs<S, N> {
         let mut found = [[Vector3::zeros(); 2]; N];
         for (mount, joint) in self.mounts.iter().zip(&placed.joints) {
             let Some(hung) = mount else { continue };
