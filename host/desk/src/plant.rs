@@ -202,11 +202,7 @@ macro_rules! plants {
 }
 
 plants! {
-    PlanarPlant<'_, 1>, 1;
-    PlanarPlant<'_, 2>, 2;
     PlanarPlant<'_, 3>, 3;
-    PlanarPlant<'_, 4>, 4;
-    PlanarPlant<'_, 5>, 5;
     PlanarPlant<'_, 6>, 6;
     FreePlant<'_, 1, 6>, 6;
     FreePlant<'_, 2, 12>, 12;

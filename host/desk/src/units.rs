@@ -351,20 +351,6 @@ fn integrate<V: Simd, B, C, E, const D: usize>(
     }
 }
 
-/// Units to be moved by wide instructions.
-struct Work<'w, 'a, B: Bodies<f64, D>, C, E, const D: usize> {
-    units: &'w mut [Unit<'a, B, C, E, D>],
-}
-
-impl<const D: usize> WithSimd for Work<'_, '_, PlanarTree<f64, D>, (), PlanarElement<D>, D> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<V: Simd>(self, instructions: V) {
-        integrate(instructions, self.units);
-    }
-}
-
 /// How many units of a mechanism are moved at a time, at most `most`; none where the machine has no registers for several.
 pub fn lanes(most: usize) -> Option<usize> {
     #[cfg(target_arch = "x86_64")]
@@ -379,15 +365,51 @@ pub fn lanes(most: usize) -> Option<usize> {
     None
 }
 
-/// Moves `units` in a plane that are [alike](are_alike), as many at a time as there are [`lanes`].
-pub fn move_in_plane<const D: usize>(
-    lanes: usize,
-    units: &mut [Unit<PlanarTree<f64, D>, (), PlanarElement<D>, D>],
-) {
-    #[cfg(target_arch = "x86_64")]
-    match (lanes, pulp::x86::V4::try_new(), pulp::x86::V3::try_new()) {
-        (8, Some(avx512), _) => Simd::vectorize(avx512, Work { units }),
-        (_, _, Some(avx2)) => Simd::vectorize(avx2, Work { units }),
-        _ => {}
-    }
+/// Bodies with elements whose units are moved several at a time.
+pub trait Together<const D: usize>: Bodies<f64, D> + Sized {
+    /// Contacts that stand side by side at the desk.
+    type Contact;
+    /// Other elements.
+    type Element;
+
+    /// Moves `units` that are [alike](are_alike), as many at a time as there are [`lanes`].
+    fn move_together(lanes: usize, units: &mut [Unit<Self, Self::Contact, Self::Element, D>]);
+}
+
+/// Units to be moved by wide instructions.
+struct Work<'w, 'a, B: Bodies<f64, D>, C, E, const D: usize> {
+    units: &'w mut [Unit<'a, B, C, E, D>],
+}
+
+/// Compiled here, so that what calls it does not compile a step again.
+macro_rules! together {
+    ($($bodies:ty, $contact:ty, $element:ty, $dimension:literal;)*) => { $(
+        impl WithSimd for Work<'_, '_, $bodies, $contact, $element, $dimension> {
+            type Output = ();
+
+            #[inline(always)]
+            fn with_simd<V: Simd>(self, instructions: V) {
+                integrate(instructions, self.units);
+            }
+        }
+
+        impl Together<$dimension> for $bodies {
+            type Contact = $contact;
+            type Element = $element;
+
+            fn move_together(lanes: usize, units: &mut [Unit<Self, $contact, $element, $dimension>]) {
+                #[cfg(target_arch = "x86_64")]
+                match (lanes, pulp::x86::V4::try_new(), pulp::x86::V3::try_new()) {
+                    (8, Some(avx512), _) => Simd::vectorize(avx512, Work { units }),
+                    (_, _, Some(avx2)) => Simd::vectorize(avx2, Work { units }),
+                    _ => {}
+                }
+            }
+        }
+    )* };
+}
+
+together! {
+    PlanarTree<f64, 3>, (), PlanarElement<3>, 3;
+    PlanarTree<f64, 6>, (), PlanarElement<6>, 6;
 }

@@ -4,17 +4,22 @@
 
 use std::{ops::ControlFlow, time::Duration};
 
-use slipfit_core::{SVector, integrator::Motion, system::Bodies as _};
+use slipfit_core::{
+    SVector,
+    integrator::Motion,
+    system::{Bodies as _, planar::PlanarTree},
+};
 use slipfit_desk::{
     error_control::{Effort, Stopped},
     grouped::Grouped,
     plant::{Allowed, Reported},
-    units::{self, Unit, Witness},
+    units::{self, Together, Unit, Witness},
 };
 
 use super::{
     Mechanism, Mounts, NamedDrive, RunError,
     bends::bends,
+    element::PlanarElement,
     record::MechanismRun,
     recorder::Recorder,
     run::{PlanarUnit, judged},
@@ -54,12 +59,15 @@ fn shares(mechanism: &Mechanism) -> bool {
 fn in_plane_by_dimension(made: &[Made], lanes: usize) -> Option<Vec<Result<MechanismRun, RunError>>> {
     let mounts: Vec<Mounts> = made.iter().map(|made| Mounts::of(&made.mechanism).ok()).collect::<Option<_>>()?;
     Some(match mounts.first()?.coordinates().len() {
-        3 => in_plane::<3>(made, &mounts, lanes),
-        _ => return None,
+        ..=3 => in_plane::<3>(made, &mounts, lanes),
+        _ => in_plane::<6>(made, &mounts, lanes),
     })
 }
 
-fn in_plane<const D: usize>(made: &[Made], mounts: &[Mounts], lanes: usize) -> Vec<Result<MechanismRun, RunError>> {
+fn in_plane<const D: usize>(made: &[Made], mounts: &[Mounts], lanes: usize) -> Vec<Result<MechanismRun, RunError>>
+where
+    PlanarTree<f64, D>: Together<D, Pose = [[f64; 2]; D], Contact = (), Element = PlanarElement<D>>,
+{
     let all = || made.iter().zip(mounts);
     let ready: Vec<_> =
         all().map(|(made, mounts)| PlanarUnit::<D>::new(&made.mechanism, mounts, &made.gaps).ok()).collect();
@@ -93,7 +101,7 @@ fn in_plane<const D: usize>(made: &[Made], mounts: &[Mounts], lanes: usize) -> V
             });
         }
     }
-    units::move_in_plane(lanes, &mut units);
+    PlanarTree::move_together(lanes, &mut units);
     drop(units);
     let found = made.iter().zip(witnesses).map(|(made, witness)| match witness {
         Some(Judge::Has(run)) => Ok(run?),

@@ -26,7 +26,8 @@ pub fn bodies<const D: usize>(
     mechanism: &Mechanism,
     mounts: &Mounts,
 ) -> Result<PlanarTree<f64, D>, ParameterError<f64>> {
-    let mut coordinates = [Coordinate::Turn; D];
+    // Those beyond what the mounts leave move nothing and stand still.
+    let mut coordinates = [Coordinate::Slide { on: None, axis: Vector2::zeros() }; D];
     for (coordinate, owned) in coordinates.iter_mut().zip(mounts.coordinates()) {
         *coordinate = owned.coordinate;
     }

@@ -70,11 +70,7 @@ fn run_by(mechanism: &Mechanism, gaps: &[f64], by: By) -> Result<MechanismRun, R
     if mechanism.planar {
         let mounts = Mounts::of(mechanism)?;
         match mounts.coordinates().len() {
-            1 => in_plane::<1>(mechanism, &mounts, gaps, by),
-            2 => in_plane::<2>(mechanism, &mounts, gaps, by),
-            3 => in_plane::<3>(mechanism, &mounts, gaps, by),
-            4 => in_plane::<4>(mechanism, &mounts, gaps, by),
-            5 => in_plane::<5>(mechanism, &mounts, gaps, by),
+            ..=3 => in_plane::<3>(mechanism, &mounts, gaps, by),
             _ => in_plane::<6>(mechanism, &mounts, gaps, by),
         }
     } else if let Some(mounts) = spatial::mounts(mechanism)? {

@@ -31,11 +31,7 @@ pub fn torn<'a>(mechanism: &'a Mechanism, gaps: &[f64]) -> Result<Option<Torn<'a
     let found = if mechanism.planar {
         let mounts = Mounts::of(mechanism)?;
         match mounts.coordinates().len() {
-            1 => in_plane::<1>(mechanism, &mounts, gaps)?,
-            2 => in_plane::<2>(mechanism, &mounts, gaps)?,
-            3 => in_plane::<3>(mechanism, &mounts, gaps)?,
-            4 => in_plane::<4>(mechanism, &mounts, gaps)?,
-            5 => in_plane::<5>(mechanism, &mounts, gaps)?,
+            ..=3 => in_plane::<3>(mechanism, &mounts, gaps)?,
             _ => in_plane::<6>(mechanism, &mounts, gaps)?,
         }
     } else if let Some(mounts) = spatial::mounts(mechanism)? {

@@ -91,6 +91,12 @@ impl<S: Scalar + PartialOrd, const D: usize> Masses<S, D> {
                 }
             }
         }
+        // A coordinate that moves nothing has a mass of its own, so that it stands still.
+        for (k, moved) in masses.meets.iter().enumerate() {
+            if !moved.get(k).copied().unwrap_or(false) {
+                masses.dot[(k, k)] = S::one();
+            }
+        }
         Ok(masses)
     }
 }
