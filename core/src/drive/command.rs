@@ -51,7 +51,21 @@ pub trait Command<S>: Clone {
 impl<S: Scalar, const N: usize> Command<S> for [Piece<S>; N] {
     #[inline(always)]
     fn piece(&self, t: S) -> Piece<S> {
-        piece_among(self, t)
+        let (zero, one) = (S::zero(), S::one());
+        let mut found = Piece { start: zero, coefficients: [zero; 4] };
+        // A sum with weights of 0 and 1, which is exact: of one question for many numbers compilers make a branch.
+        let mut has_begun = self.map(|piece| piece.start.select_gt(t, zero, one)).into_iter();
+        let mut begun = has_begun.next().unwrap_or(zero);
+        for piece in self {
+            let next = has_begun.next().unwrap_or(zero);
+            let weight = begun - next;
+            begun = next;
+            found.start += weight * piece.start;
+            for (found, coefficient) in found.coefficients.iter_mut().zip(piece.coefficients) {
+                *found += weight * coefficient;
+            }
+        }
+        found
     }
 
     fn checked(self) -> Result<Self, ParameterError<S>>
@@ -60,26 +74,6 @@ impl<S: Scalar, const N: usize> Command<S> for [Piece<S>; N] {
     {
         check_pieces(&self).map(|()| self)
     }
-}
-
-/// That of the `pieces` which holds at time `t` (s), without a branch.
-#[inline(always)]
-pub fn piece_among<S: Scalar>(pieces: &[Piece<S>], t: S) -> Piece<S> {
-    let (zero, one) = (S::zero(), S::one());
-    let mut found = Piece { start: zero, coefficients: [zero; 4] };
-    // A sum with weights of 0 and 1, which is exact: of one question for many numbers compilers make a branch.
-    let mut has_begun = pieces.iter().map(|piece| piece.start.select_gt(t, zero, one));
-    let mut begun = has_begun.next().unwrap_or(zero);
-    for piece in pieces {
-        let next = has_begun.next().unwrap_or(zero);
-        let weight = begun - next;
-        begun = next;
-        found.start += weight * piece.start;
-        for (found, coefficient) in found.coefficients.iter_mut().zip(piece.coefficients) {
-            *found += weight * coefficient;
-        }
-    }
-    found
 }
 
 /// Whether the `pieces` can be followed.

@@ -4,7 +4,7 @@ mod command;
 mod ramp;
 mod train;
 
-pub use command::{Command, Commanded, Piece, check_pieces, piece_among};
+pub use command::{Command, Commanded, Piece, check_pieces};
 pub use ramp::Drive;
 pub use train::{Train, TrainData};
 

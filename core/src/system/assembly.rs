@@ -1,6 +1,6 @@
 //! What sets of elements are, and what they add up to: forces alone, with the balance of a stage, or with all derivatives.
 
-use super::{Bodies, Jacobian, LANES, Law, Link, Reduced, Response};
+use super::{Bodies, Jacobian, Law, Link, Reduced, Response};
 use crate::{SVector, Scalar, mechanism::Way};
 
 /// Elements that act on bodies `B`: one, an array, a slice, or a tuple of such.
@@ -51,14 +51,6 @@ pub trait Assembly<S: Scalar, B: Bodies<S, D>, const D: usize> {
         response: &Response<S, R>,
     );
 
-    /// Adds what elements in `lanes` add up to, lane by lane: they have no internal variables.
-    fn add_by_lane<E: Elements<S, B, D, Internal = ()>>(
-        &mut self,
-        lanes: &[&[E]; LANES],
-        way: (S, Way<S>),
-        at: (&B, &B::Placed),
-    );
-
     /// Adds what `elements` of the bodies do, taken as free ones, whose joints reduce it.
     fn add_through_joints<E: Elements<S, B::Free, W>, const W: usize>(
         &mut self,
@@ -105,21 +97,6 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for Sum<S, D>
     }
 
     #[inline(always)]
-    fn add_by_lane<E: Elements<S, B, D, Internal = ()>>(
-        &mut self,
-        lanes: &[&[E]; LANES],
-        way: (S, Way<S>),
-        at: (&B, &B::Placed),
-    ) {
-        let [first, second, third, fourth] = lanes.map(|lane| {
-            let mut sum = Sum(SVector::<S, D>::zeros());
-            lane.act(way, at, &(), None, &mut sum);
-            sum.0
-        });
-        self.0 += first + second + third + fourth;
-    }
-
-    #[inline(always)]
     fn add_through_joints<E: Elements<S, B::Free, W>, const W: usize>(
         &mut self,
         elements: &E,
@@ -148,21 +125,6 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for StageSum<
     ) {
         link.add_force(at, view, &response.force, &mut self.force);
         link.add_impedance::<W>(at, view, response, self.a, &mut self.matrix);
-    }
-
-    #[inline(always)]
-    fn add_by_lane<E: Elements<S, B, D, Internal = ()>>(
-        &mut self,
-        lanes: &[&[E]; LANES],
-        way: (S, Way<S>),
-        at: (&B, &B::Placed),
-    ) {
-        for lane in lanes {
-            let mut sum = StageSum { force: SVector::zeros(), matrix: B::Jacobian::zero(), a: self.a };
-            lane.act(way, at, &(), None, &mut sum);
-            self.force += sum.force;
-            self.matrix = self.matrix.plus(&sum.matrix, S::one());
-        }
     }
 
     #[inline(always)]
@@ -199,31 +161,6 @@ impl<S: Scalar, B: Bodies<S, D>, const D: usize> Assembly<S, B, D> for Derivativ
             link.add_force(at, view, &response.per_time, &mut self.per_time);
         }
         link.add_derivatives::<W>(at, view, response, &mut self.damping, &mut self.stiffness);
-    }
-
-    #[inline(always)]
-    fn add_by_lane<E: Elements<S, B, D, Internal = ()>>(
-        &mut self,
-        lanes: &[&[E]; LANES],
-        way: (S, Way<S>),
-        at: (&B, &B::Placed),
-    ) {
-        let (zero, none) = (SVector::<S, D>::zeros(), B::Jacobian::zero());
-        let [first, second, third, fourth] = lanes.map(|lane| {
-            let mut sum = Derivatives { force: zero, per_time: zero, damping: none, stiffness: none };
-            lane.act(way, at, &(), None, &mut sum);
-            sum
-        });
-        self.force += first.force + second.force + third.force + fourth.force;
-        let sum = |of: [&B::Jacobian; LANES]| {
-            let [first, others @ ..] = of;
-            others.into_iter().fold(*first, |sum, one| sum.plus(one, S::one()))
-        };
-        self.damping =
-            self.damping.plus(&sum([&first.damping, &second.damping, &third.damping, &fourth.damping]), S::one());
-        self.stiffness = self
-            .stiffness
-            .plus(&sum([&first.stiffness, &second.stiffness, &third.stiffness, &fourth.stiffness]), S::one());
     }
 
     #[inline(always)]

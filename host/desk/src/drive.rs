@@ -25,7 +25,10 @@ impl Cast for Pieces {
 
 impl<S: Real> Command<S> for Pieces<S> {
     fn piece(&self, t: S) -> Piece<S> {
-        S::piece(&self.0, t)
+        match self.0.partition_point(|piece| piece.start <= t) {
+            0 => Piece { start: S::zero(), coefficients: [S::zero(); 4] },
+            after => self.0[after - 1],
+        }
     }
 
     fn checked(self) -> Result<Self, ParameterError<S>> {
@@ -162,6 +165,9 @@ impl<S: Real> Push<S> for AnyDrive<S> {
     fn pushed(&self, t: S, v: S) -> Pushed<S> {
         match self {
             Self::Ramp(drive) => drive.pushed(t, v),
+            // In place for several units: a call from wide instructions costs more than what these do.
+            Self::RampTrain(drive) if S::UNITS > 1 => drive.pushed(t, v),
+            Self::Friction(drive) if S::UNITS > 1 => drive.pushed(t, v),
             other => other.pushed_otherwise(t, v),
         }
     }

@@ -96,9 +96,27 @@ fn act<S, B, L, W, const D: usize, const R: usize>(
     sum.add::<L, W, R>(link, at, &view, &response);
 }
 
-/// [`act`] in a function of its own.
-#[inline(never)]
+/// [`act`] in a function of its own: of what is seldom asked for, and would be compiled into every mechanism. For one unit: several have
+/// no such elements.
+#[inline(always)]
 fn act_apart<S, B, L, W, const D: usize, const R: usize>(
+    element: &Element<L, W, R>,
+    way: (S, Way<S>),
+    at: (&B, &B::Placed),
+    sum: &mut impl Assembly<S, B, D>,
+) where
+    S: Real,
+    B: Bodies<S, D>,
+    L: Link<S, B, D, R>,
+    W: Law<S, R, Internal = ()>,
+{
+    if S::UNITS == 1 {
+        act_out_of_line(element, way, at, sum);
+    }
+}
+
+#[inline(never)]
+fn act_out_of_line<S, B, L, W, const D: usize, const R: usize>(
     element: &Element<L, W, R>,
     way: (S, Way<S>),
     at: (&B, &B::Placed),
@@ -282,7 +300,6 @@ impl<const D: usize, S: Real> Elements<S, PlanarTree<S, D>, D> for PlanarElement
             }
             Self::Motor(element) => act(element, way, at, &(), sum),
             Self::Pusher(element) => act(element, way, at, &(), sum),
-            // Out of line: seldom asked for, they would be compiled into every mechanism.
             Self::Contour(element) => act_apart(element, way, at, sum),
             Self::Line(element) => act_apart(element, way, at, sum),
         }

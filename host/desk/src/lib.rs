@@ -11,7 +11,6 @@ pub mod contact;
 pub mod drive;
 pub mod element;
 pub mod error_control;
-pub mod grouped;
 pub mod laws;
 pub mod out_of_line;
 pub mod pack;

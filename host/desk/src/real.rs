@@ -1,10 +1,7 @@
 //! Numbers that the desk computes with: one, or one for each of several units.
 
 use pulp::Simd;
-use slipfit_core::{
-    Scalar,
-    drive::{Piece, piece_among},
-};
+use slipfit_core::Scalar;
 
 use crate::pack::Pack;
 
@@ -21,9 +18,6 @@ pub trait Real: Scalar + PartialOrd {
 
     /// What `of` makes of each of these numbers and the other's.
     fn by_each(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self;
-
-    /// That of the `pieces` of a command which holds at time `t` (s).
-    fn piece(pieces: &[Piece<Self>], t: Self) -> Piece<Self>;
 }
 
 impl Real for f64 {
@@ -39,13 +33,6 @@ impl Real for f64 {
 
     fn by_each(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
         of(self, other)
-    }
-
-    fn piece(pieces: &[Piece<Self>], t: Self) -> Piece<Self> {
-        match pieces.partition_point(|piece| piece.start <= t) {
-            0 => Piece { start: 0.0, coefficients: [0.0; 4] },
-            after => pieces[after - 1],
-        }
     }
 }
 
@@ -69,9 +56,5 @@ impl<V: Simd> Real for Pack<V, f64> {
             *x = of(*x, *y);
         }
         result
-    }
-
-    fn piece(pieces: &[Piece<Self>], t: Self) -> Piece<Self> {
-        piece_among(pieces, t)
     }
 }

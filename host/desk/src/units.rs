@@ -20,18 +20,17 @@ use crate::{
     closing::WideGaps,
     element::{PlanarElement, Touching, Spinning},
     error_control::{Accelerations, Effort, Pace, STEPS_PER_LOOK, Stopped},
-    grouped::Grouped,
     pack::Pack,
     plant::{Allowed, Reported},
     real::Real,
 };
 
 /// A unit to be moved: its bodies and what acts on them, where and how fast it starts, and who sees it move.
-pub struct Unit<'a, B: Bodies<f64, D>, C, E, const D: usize> {
+pub struct Unit<'a, B: Bodies<f64, D>, E, const D: usize> {
     /// The bodies.
     pub bodies: B,
     /// What acts on them.
-    pub elements: Grouped<C, E>,
+    pub elements: Vec<E>,
     /// Pose and velocities at the start.
     pub start: (B::Pose, SVector<f64, D>),
     /// Simulated time (s).
@@ -119,27 +118,27 @@ type Wide<V> = Pack<V, f64>;
 type WideOf<V, T> = <T as Cast>::Of<Wide<V>>;
 
 /// The mechanisms of some units.
-type WideSystem<V, B, C, E> = System<WideOf<V, B>, Grouped<WideOf<V, C>, WideOf<V, E>>>;
+type WideSystem<'w, V, B, E> = System<WideOf<V, B>, &'w [WideOf<V, E>]>;
 
-/// Whether two units have the same bodies, joints and laws, so that numbers alone differ.
-pub fn are_alike<B, C, E>(one: (&B, &Grouped<C, E>), other: (&B, &Grouped<C, E>)) -> bool
+/// Whether two units, each with its bodies and elements, have the same bodies, joints and laws, so that numbers alone differ.
+pub fn are_alike<B, E>(one: (&B, &[E]), other: (&B, &[E])) -> bool
 where
     B: Cast<Of<f64>: PartialEq>,
-    C: Cast<Of<f64>: PartialEq>,
     E: Cast<Of<f64>: PartialEq>,
 {
-    let shape = |(bodies, elements): (&B, &Grouped<C, E>)| (bodies.cast(&mut |_| 0.0), elements.cast(&mut |_| 0.0));
-    shape(one) == shape(other)
+    let none = &mut |_| 0.0;
+    one.0.cast(none) == other.0.cast(none)
+        && one.1.len() == other.1.len()
+        && one.1.iter().zip(other.1).all(|(one, other)| one.cast(none) == other.cast(none))
 }
 
-/// The mechanisms of those of the `units` that are on the lanes: `sources` says which is on each.
-fn gathered<V: Simd, B, C, E, const D: usize>(
-    units: &[Unit<B, C, E, D>],
+/// The bodies and elements of those of the `units` that are on the lanes: `sources` says which is on each.
+fn gathered<V: Simd, B, E, const D: usize>(
+    units: &[Unit<B, E, D>],
     sources: &[usize],
-) -> WideSystem<V, B, C, E>
+) -> (WideOf<V, B>, Vec<WideOf<V, E>>)
 where
     B: Cast + Bodies<f64, D>,
-    C: Cast,
     E: Cast,
 {
     let mut numbers: Vec<Wide<V>> = Vec::new();
@@ -156,36 +155,31 @@ where
         };
         let Unit { bodies, elements, .. } = &units[*source];
         bodies.cast(&mut put);
-        elements.cast(&mut put);
+        elements.iter().for_each(|element| drop(element.cast(&mut put)));
     }
     let mut numbers = numbers.into_iter();
     let mut next = |_| numbers.next().unwrap_or_default();
     let Unit { bodies, elements, .. } = &units[sources[0]];
-    System::new(bodies.cast(&mut next), elements.cast(&mut next))
+    (bodies.cast(&mut next), elements.iter().map(|element| element.cast(&mut next)).collect())
 }
 
 /// Fills in the contacts of the units of `system`.
 #[inline(always)]
-fn watch<S: Real, B, C, E, const D: usize>(
-    system: &System<B, Grouped<C, E>>,
+fn watch<S: Real, B, E, const D: usize>(
+    system: &System<B, &[E]>,
     pose: &B::Pose,
     velocity: &SVector<S, D>,
     gaps: &mut WideGaps<S>,
 ) where
     B: Spinning<S, D>,
-    C: Touching<S, B, D>,
     E: Touching<S, B, D>,
 {
     let placed = system.bodies().placed(pose, velocity);
     gaps.spin = system.bodies().fastest(&placed);
     gaps.contacts.clear();
-    let Grouped { lanes, rest } = system.elements();
-    let (at, mut see) = ((system.bodies(), &placed), |contact| gaps.contacts.push(contact));
-    for one in lanes.iter().flatten() {
-        one.approach(at, &mut see);
-    }
-    for one in rest {
-        one.approach(at, &mut see);
+    let mut see = |contact| gaps.contacts.push(contact);
+    for element in *system.elements() {
+        element.approach((system.bodies(), &placed), &mut see);
     }
 }
 
@@ -208,27 +202,22 @@ const MOST_LANES: usize = 8;
 
 /// Moves the `units`, which are alike. That the machine has them is what `_instructions` prove.
 #[inline(always)]
-fn integrate<V: Simd, B, C, E, const D: usize>(
-    _instructions: V,
-    units: &mut [Unit<B, C, E, D>],
-) where
-    B: Cast + Bodies<f64, D>,
-    C: Cast,
+fn integrate<V: Simd, B, E, const D: usize>(_instructions: V, units: &mut [Unit<B, E, D>])
+where
+    B: Cast<Of<Wide<V>>: Copy> + Bodies<f64, D>,
     E: Cast,
     WideOf<V, B>: Spinning<Wide<V>, D, Pose: WidePose<B::Pose>>,
-    WideOf<V, C>: Touching<Wide<V>, WideOf<V, B>, D, Internal = ()>,
     WideOf<V, E>: Touching<Wide<V>, WideOf<V, B>, D, Internal: Default>,
 {
     let zero = Wide::<V>::splat(0.0);
     let lanes = Wide::<V>::LANES;
     let Some(first) = units.first() else { return };
     let mut sources = vec![0; lanes];
-    let mut system = gathered::<V, _, _, _, D>(units, &sources);
-    let mut motion: MotionOf<Wide<V>, WideSystem<V, B, C, E>, D> = Motion {
+    let mut motion: MotionOf<Wide<V>, WideSystem<V, B, E>, D> = Motion {
         pose: WidePose::everywhere(&first.start.0),
         velocity: SVector::zeros(),
         acceleration: SVector::zeros(),
-        internal: Mechanism::<Wide<V>, D>::fresh(&system),
+        internal: Default::default(),
     };
     // Which unit is on each lane, and how far it is; none where there are no more.
     let mut on: Vec<Option<(usize, Pace)>> = vec![None; lanes];
@@ -252,7 +241,8 @@ fn integrate<V: Simd, B, C, E, const D: usize>(
         if on.iter().all(Option::is_none) {
             return;
         }
-        system = gathered::<V, _, _, _, D>(units, &sources);
+        let (bodies, elements) = gathered::<V, _, _, D>(units, &sources);
+        let system: WideSystem<V, B, E> = System::new(bodies, &elements[..]);
         let (pose, forgotten) = (motion.pose, Mechanism::<Wide<V>, D>::fresh(&system));
         system.accept(fresh, (&pose, &forgotten), (&mut motion.pose, &mut motion.internal));
         watch(&system, &motion.pose, &motion.velocity, &mut after);
@@ -367,24 +357,22 @@ pub fn lanes(most: usize) -> Option<usize> {
 
 /// Bodies with elements whose units are moved several at a time.
 pub trait Together<const D: usize>: Bodies<f64, D> + Sized {
-    /// Contacts that stand side by side at the desk.
-    type Contact;
-    /// Other elements.
+    /// What acts on them.
     type Element;
 
     /// Moves `units` that are [alike](are_alike), as many at a time as there are [`lanes`].
-    fn move_together(lanes: usize, units: &mut [Unit<Self, Self::Contact, Self::Element, D>]);
+    fn move_together(lanes: usize, units: &mut [Unit<Self, Self::Element, D>]);
 }
 
 /// Units to be moved by wide instructions.
-struct Work<'w, 'a, B: Bodies<f64, D>, C, E, const D: usize> {
-    units: &'w mut [Unit<'a, B, C, E, D>],
+struct Work<'w, 'a, B: Bodies<f64, D>, E, const D: usize> {
+    units: &'w mut [Unit<'a, B, E, D>],
 }
 
 /// Compiled here, so that what calls it does not compile a step again.
 macro_rules! together {
-    ($($bodies:ty, $contact:ty, $element:ty, $dimension:literal;)*) => { $(
-        impl WithSimd for Work<'_, '_, $bodies, $contact, $element, $dimension> {
+    ($($dimension:literal),*) => { $(
+        impl WithSimd for Work<'_, '_, PlanarTree<f64, $dimension>, PlanarElement<$dimension>, $dimension> {
             type Output = ();
 
             #[inline(always)]
@@ -393,11 +381,10 @@ macro_rules! together {
             }
         }
 
-        impl Together<$dimension> for $bodies {
-            type Contact = $contact;
-            type Element = $element;
+        impl Together<$dimension> for PlanarTree<f64, $dimension> {
+            type Element = PlanarElement<$dimension>;
 
-            fn move_together(lanes: usize, units: &mut [Unit<Self, $contact, $element, $dimension>]) {
+            fn move_together(lanes: usize, units: &mut [Unit<Self, Self::Element, $dimension>]) {
                 #[cfg(target_arch = "x86_64")]
                 match (lanes, pulp::x86::V4::try_new(), pulp::x86::V3::try_new()) {
                     (8, Some(avx512), _) => Simd::vectorize(avx512, Work { units }),
@@ -409,7 +396,4 @@ macro_rules! together {
     )* };
 }
 
-together! {
-    PlanarTree<f64, 3>, (), PlanarElement<3>, 3;
-    PlanarTree<f64, 6>, (), PlanarElement<6>, 6;
-}
+together!(3, 6);

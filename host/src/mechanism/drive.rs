@@ -154,10 +154,16 @@ impl NamedDrive {
     }
 
     /// How fast (m/s², rad/s²) the speed that it sees changes, by the accelerations of its body likewise.
-    pub fn feels(&self, [centre, turning]: [Vector3<f64>; 2], spin: Vector3<f64>, arm: Vector3<f64>) -> f64 {
+    pub fn feels(
+        &self,
+        centre: impl FnOnce() -> Vector3<f64>,
+        turning: Vector3<f64>,
+        spin: Vector3<f64>,
+        arm: Vector3<f64>,
+    ) -> f64 {
         let axis = Vector3::from(self.action.axis());
         match self.action {
-            Action::Pushes { .. } => (centre + turning.cross(&arm) + spin.cross(&spin.cross(&arm))).dot(&axis),
+            Action::Pushes { .. } => (centre() + turning.cross(&arm) + spin.cross(&spin.cross(&arm))).dot(&axis),
             Action::Turns { .. } => turning.dot(&axis),
         }
     }

@@ -11,13 +11,12 @@ use slipfit_core::{
 };
 use slipfit_desk::{
     error_control::{Effort, Stopped},
-    grouped::Grouped,
     plant::{Allowed, Reported},
     units::{self, Together, Unit, Witness},
 };
 
 use super::{
-    Mechanism, Mounts, NamedDrive, RunError,
+    Joint, Mechanism, Mounts, NamedDrive, RunError, SlidingData, Spring, SpringKind,
     bends::bends,
     element::PlanarElement,
     record::MechanismRun,
@@ -33,77 +32,82 @@ pub struct Made {
     pub gaps: Vec<f64>,
 }
 
-/// The most pieces of a command with which units share their steps: each looks at all of them.
-const MOST_PIECES: usize = 16;
+/// What is found of each unit.
+type Found = Vec<Result<MechanismRun, RunError>>;
 
 /// Runs `made` units, at most `lanes` at a time on one thread. Of none is told how it moves.
-pub fn run_many(made: &[Made], lanes: usize) -> Vec<Result<MechanismRun, RunError>> {
-    let lanes = made.first().filter(|first| shares(&first.mechanism)).and_then(|_| units::lanes(lanes));
-    let together = lanes.and_then(|lanes| in_plane_by_dimension(made, lanes));
-    together.unwrap_or_else(|| made.iter().map(alone).collect())
+pub fn run_many(made: &[Made], lanes: usize) -> Found {
+    let is_shared = made.first().is_some_and(|first| shares(&first.mechanism));
+    let mounts = || made.iter().map(|made| Mounts::of(&made.mechanism).ok()).collect::<Option<Vec<_>>>();
+    match units::lanes(lanes).filter(|_| is_shared).zip(mounts()) {
+        None => made.iter().map(alone).collect(),
+        Some((lanes, mounts)) => match mounts.first().map_or(0, |mounts| mounts.coordinates().len()) {
+            ..=3 => in_plane::<3>(made, &mounts, lanes),
+            _ => in_plane::<6>(made, &mounts, lanes),
+        },
+    }
 }
 
 fn alone(Made { mechanism, gaps }: &Made) -> Result<MechanismRun, RunError> {
     judged(mechanism, gaps)
 }
 
-/// Whether units of `mechanism` share their steps: what a controller that samples holds is not known to others.
+/// Whether units of `mechanism` share their steps: those in space, with commands other than a ramp, friction other than Coulomb's, springs along
+/// lines and contoured walls run one by one.
 fn shares(mechanism: &Mechanism) -> bool {
+    let by_ramp = |named: &NamedDrive| named.sampling.is_none() && named.command.is_none();
+    let by_coulomb = |joint: &Joint| matches!(joint.laws.friction, SlidingData::Coulomb(_)) && joint.walls.is_parallel();
+    let by_turn = |spring: &Spring| matches!(spring.kind, SpringKind::Torsion { .. });
     mechanism.planar
-        && mechanism.drives.iter().all(|NamedDrive { sampling, command, .. }| {
-            sampling.is_none() && command.as_ref().is_none_or(|command| command.pieces.0.len() <= MOST_PIECES)
-        })
+        && mechanism.drives.iter().all(by_ramp)
+        && mechanism.joints.iter().all(by_coulomb)
+        && mechanism.springs.iter().all(by_turn)
 }
 
-/// Runs units in a plane; `None` where none of them has coordinates.
-fn in_plane_by_dimension(made: &[Made], lanes: usize) -> Option<Vec<Result<MechanismRun, RunError>>> {
-    let mounts: Vec<Mounts> = made.iter().map(|made| Mounts::of(&made.mechanism).ok()).collect::<Option<_>>()?;
-    Some(match mounts.first()?.coordinates().len() {
-        ..=3 => in_plane::<3>(made, &mounts, lanes),
-        _ => in_plane::<6>(made, &mounts, lanes),
-    })
-}
-
-fn in_plane<const D: usize>(made: &[Made], mounts: &[Mounts], lanes: usize) -> Vec<Result<MechanismRun, RunError>>
+fn in_plane<const D: usize>(made: &[Made], mounts: &[Mounts], lanes: usize) -> Found
 where
-    PlanarTree<f64, D>: Together<D, Pose = [[f64; 2]; D], Contact = (), Element = PlanarElement<D>>,
+    PlanarTree<f64, D>: Together<D, Pose = [[f64; 2]; D], Element = PlanarElement<D>>,
 {
-    let all = || made.iter().zip(mounts);
-    let ready: Vec<_> =
-        all().map(|(made, mounts)| PlanarUnit::<D>::new(&made.mechanism, mounts, &made.gaps).ok()).collect();
-    let bends: Vec<_> = made.iter().map(|made| bends(&made.mechanism)).collect();
+    let unit = |(made, mounts): (&Made, &Mounts)| PlanarUnit::<D>::new(&made.mechanism, mounts, &made.gaps).ok();
+    let mut ready: Vec<_> = made.iter().zip(mounts).map(unit).collect();
+    // Those that are not like the first run alone.
+    let first = ready.iter().flatten().next().map(|first| (first.tree, first.elements.clone()));
+    for ready in &mut ready {
+        let is_like = |unit: &PlanarUnit<D>| {
+            let first = first.as_ref().map(|(tree, elements)| (tree, &elements[..]));
+            first.is_some_and(|first| units::are_alike(first, (&unit.tree, &unit.elements)))
+        };
+        *ready = ready.take().filter(is_like);
+    }
     let error = |unit: &PlanarUnit<D>| {
-        let (speed, least_mass) = (unit.limits, unit.tree.least_mass());
-        move |step: Reported, length: f64| speed.error(&step, length, least_mass)
+        let (limits, least_mass) = (unit.limits, unit.tree.least_mass());
+        move |step: Reported, length: f64| limits.error(&step, length, least_mass)
     };
-    let errors: Vec<_> = ready.iter().map(|ready| ready.as_ref().map(error)).collect();
-    let mut witnesses: Vec<Option<Judge<_, D>>> = all()
-        .zip(&ready)
-        .map(|((Made { mechanism, .. }, mounts), ready)| {
-            let unit = ready.as_ref()?;
-            let told = Box::new(unit.told(mechanism, mounts));
-            Some(Judge::Watches(Some(Recorder::new(mechanism, told, &unit.start, &unit.limits, false))))
-        })
-        .collect();
-    let mut units: Vec<Unit<_, (), _, D>> = Vec::new();
-    for (k, (((ready, error), witness), bends)) in ready.iter().zip(&errors).zip(&mut witnesses).zip(&bends).enumerate() {
-        let (Some(unit), Some(error), Some(witness)) = (ready, error, witness) else { continue };
-        let elements = Grouped::none(unit.elements.clone());
-        // What is not like the others runs alone.
-        if units.first().is_none_or(|first| units::are_alike((&first.bodies, &first.elements), (&unit.tree, &elements))) {
+    let errors: Vec<_> = ready.iter().map(|unit| unit.as_ref().map(error)).collect();
+    let bends: Vec<_> = made.iter().map(|made| bends(&made.mechanism)).collect();
+    let all = made.iter().zip(mounts).zip(&ready);
+    let judges = all.map(|((Made { mechanism, .. }, mounts), unit)| {
+        let unit = unit.as_ref()?;
+        let told = Box::new(unit.told(mechanism, mounts));
+        Some(Judge::Watches(Some(Recorder::new(mechanism, told, &unit.start, &unit.limits, false))))
+    });
+    let mut judges: Vec<_> = judges.collect();
+    let mut units = Vec::new();
+    for (k, judge) in judges.iter_mut().enumerate() {
+        if let (Some(unit), Some(error), Some(witness)) = (&ready[k], &errors[k], judge) {
             units.push(Unit {
                 bodies: unit.tree,
-                elements,
+                elements: unit.elements.clone(),
                 start: unit.start,
                 duration: made[k].mechanism.run.duration,
-                allowed: Allowed { error, depth: unit.limits.place(), bends },
+                allowed: Allowed { error, depth: unit.limits.place(), bends: &bends[k] },
                 witness,
             });
         }
     }
     PlanarTree::move_together(lanes, &mut units);
     drop(units);
-    let found = made.iter().zip(witnesses).map(|(made, witness)| match witness {
+    let found = made.iter().zip(judges).map(|(made, judge)| match judge {
         Some(Judge::Has(run)) => Ok(run?),
         _ => alone(made),
     });

@@ -325,5 +325,6 @@ fn felt<P, const D: usize>(
 ) -> f64 {
     let PlacedBody { to_frame, rotation_w, .. } = bodies.bodies()[named.body];
     let [_, arm] = named.arms(|lever| to_frame * lever);
-    named.feels(bodies.acceleration(named.body, of_coordinates), rotation_w, arm)
+    let centre = || bodies.acceleration(named.body, of_coordinates);
+    named.feels(centre, bodies.turning(named.body, of_coordinates), rotation_w, arm)
 }

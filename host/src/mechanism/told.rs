@@ -30,8 +30,11 @@ pub(super) trait Told<P, const D: usize> {
     /// How much (rad) a body has turned there about the axes of the frame, see [`BodyMotion::turned`].
     fn turned(&mut self, body: usize) -> Vector3<f64>;
 
-    /// The accelerations of a body there, of its centre of mass (m/s²) and of its turning (rad/s²), where its coordinates have these.
-    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> [Vector3<f64>; 2];
+    /// The acceleration (m/s²) of a body's centre of mass there, where coordinates have these.
+    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64>;
+
+    /// The same of its turning (rad/s²).
+    fn turning(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64>;
 
     /// The state at a `pose` and `rates` that come after the last ones.
     fn state(&mut self, pose: &P, rates: [f64; D]) -> State<D>;
@@ -111,15 +114,19 @@ impl<const D: usize> Told<[[f64; 2]; D], D> for InPlane<'_, D> {
         Vector3::z() * self.angles[turn]
     }
 
-    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> [Vector3<f64>; 2] {
-        let (centre, _, turn) = &self.bodies.bodies[body];
+    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
+        let (centre, ..) = &self.bodies.bodies[body];
         let (topology, placed) = (self.tree.topology(), &self.placed);
         let at = At::of(topology, centre, placed);
         let swept = at.swept(topology, placed, &placed.rates);
         let of = at.velocity(of_coordinates);
         let moved = swept.iter().zip(&placed.rates).fold(of, |sum, (column, rate)| sum + column * *rate);
-        let turning = turn.map_or(0.0, |turn| of_coordinates[turn]);
-        [Vector3::new(moved.x, moved.y, 0.0), Vector3::z() * turning]
+        Vector3::new(moved.x, moved.y, 0.0)
+    }
+
+    fn turning(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
+        let (.., turn) = &self.bodies.bodies[body];
+        Vector3::z() * turn.map_or(0.0, |turn| of_coordinates[turn])
     }
 
     fn state(&mut self, pose: &[[f64; 2]; D], rates: [f64; D]) -> State<D> {
@@ -172,9 +179,12 @@ impl<const N: usize, const D: usize> Told<[Pose<f64>; N], D> for InSpace<'_, N, 
         Vector3::from_column_slice(&state.places[6 * body + 3..6 * body + 6])
     }
 
-    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> [Vector3<f64>; 2] {
-        let of = |k: usize| Vector3::new(of_coordinates[k], of_coordinates[k + 1], of_coordinates[k + 2]);
-        [of(6 * body), self.looked[body].to_frame * of(6 * body + 3)]
+    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
+        of_coordinates.fixed_rows::<3>(6 * body).into()
+    }
+
+    fn turning(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
+        self.looked[body].to_frame * of_coordinates.fixed_rows::<3>(6 * body + 3)
     }
 
     fn state(&mut self, poses: &[Pose<f64>; N], rates: [f64; D]) -> State<D> {
@@ -236,8 +246,12 @@ impl<const N: usize, const W: usize, const D: usize> Told<[[f64; 2]; D], D> for 
         self.motions[body].turned
     }
 
-    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> [Vector3<f64>; 2] {
-        self.tree.accelerations(&self.placed, of_coordinates)[body]
+    fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
+        self.tree.accelerations(&self.placed, of_coordinates)[body][0]
+    }
+
+    fn turning(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
+        self.tree.accelerations(&self.placed, of_coordinates)[body][1]
     }
 
     fn state(&mut self, pose: &[[f64; 2]; D], rates: [f64; D]) -> State<D> {

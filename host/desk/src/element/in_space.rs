@@ -146,7 +146,6 @@ impl<S: Real, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D
             Self::Motor(element) => act(element, way, at, &(), sum),
             Self::Pusher(element) => act(element, way, at, &(), sum),
             Self::AtPoint(element) => act(element, way, at, &(), sum),
-            // Out of line: seldom asked for, they would be compiled into every mechanism.
             Self::Contour(element) => act_apart(element, way, at, sum),
             Self::Line(element) => act_apart(element, way, at, sum),
         }
