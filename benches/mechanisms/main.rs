@@ -5,6 +5,9 @@
 //! gets the composed type's own forces and a range of tolerances, of which the best counts. Both must meet the reference run
 //! to [`WITHIN`] of the greatest effort. Ratios are medians of turns, because a shared machine changes its pace. Fails above
 //! [`OF_BDF`] or [`OF_COMPOSED`].
+//!
+//! Then units of populations of mechanisms in a plane, on one thread: one by one, and as many at a time as registers hold. Fails where
+//! that is not [`TOGETHER`] times as fast.
 
 #[path = "../work_precision/diffsol_peer.rs"]
 #[allow(dead_code)]
@@ -18,7 +21,7 @@ use std::{hint::black_box, process::ExitCode, time::Instant};
 use diffsol_peer::{BDF, FirstOrder};
 use entry::Tolerances;
 use slipfit::{
-    mechanism::{Mechanism, Mounts, planar, run, spatial},
+    mechanism::{Made, Mechanism, Mounts, planar, run, run_many, spatial},
     scene::{Override, SceneFile, shipped},
 };
 use slipfit_core::{
@@ -37,6 +40,8 @@ const OF_BDF: f64 = 0.5;
 /// The most that elements chosen at run time may take of the time of composed ones.
 const OF_COMPOSED: f64 = 1.3;
 const TURNS: usize = 15;
+/// How many times as fast units have to be that are moved four and eight at a time, what is made of their motions included.
+const TOGETHER: [f64; 2] = [1.4, 1.7];
 
 fn main() -> ExitCode {
     println!("mechanism            desk, ms  of diffsol's BDF, with all columns   chosen elements of composed ones");
@@ -77,7 +82,38 @@ fn main() -> ExitCode {
         let start = telescopic_drawer::start();
         fails |= case.judge::<_, _, telescopic_drawer::Scheme, 12>(composed, System::new(bodies, &elements[..]), start);
     }
+    println!("units a second       one by one    four at a time    eight at a time");
+    for name in ["slider-crank", "four-bar", "slider-crank-guide"] {
+        let made = units(scene(name));
+        let turns = (0..TURNS).map(|_| [1, 4, 8].map(|lanes| rate(&made, lanes)));
+        let turns: Vec<[f64; 3]> = turns.collect();
+        let rates = [0, 1, 2].map(|k| median(turns.iter().map(|rates| rates[k])));
+        let ratios = [1, 2].map(|k| median(turns.iter().map(|rates| rates[k] / rates[0])));
+        let told = |k: usize| format!("{:.0} ({:.2} times)", rates[k], ratios[k - 1]);
+        println!("{name:20} {:>10.0} {:>18} {:>18}", rates[0], told(1), told(2));
+        let widest = slipfit_desk::units::lanes(usize::MAX).unwrap_or(1);
+        fails |= (widest >= 4 && ratios[0] < TOGETHER[0]) || (widest >= 8 && ratios[1] < TOGETHER[1]);
+    }
     ExitCode::from(u8::from(fails))
+}
+
+/// Some units of `mechanism`, at the tolerance of populations, whose gaps are at as many levels.
+fn units(mut mechanism: Mechanism) -> Vec<Made> {
+    mechanism.run.error = 1e-4;
+    let unit = |k: u32| {
+        let levels: Vec<f64> =
+            (0..mechanism.gaps.len()).map(|gap| f64::from(k * (gap as u32 + 3) % 41) * 0.1 - 2.0).collect();
+        Made { gaps: mechanism.gaps_at(&levels).expect("in bounds"), mechanism: mechanism.clone() }
+    };
+    (0..48).map(unit).collect()
+}
+
+/// Units a second on this thread.
+fn rate(made: &[Made], lanes: usize) -> f64 {
+    let start = Instant::now();
+    let found = black_box(run_many(made, lanes));
+    assert!(found.iter().all(Result::is_ok), "every unit is solved");
+    made.len() as f64 / start.elapsed().as_secs_f64()
 }
 
 /// A mechanism, its reference run, whose first column is the effort, and the coordinate whose speed the drive sees.

@@ -71,6 +71,12 @@ pub(crate) fn applied<S: Scalar, const R: usize, const C: usize>(
     sum
 }
 
+/// `m`ᵀ · `v` in a plane.
+#[inline(always)]
+pub(crate) fn transposed_in_plane<S: Scalar>(m: &Matrix2<S>, v: &Vector2<S>) -> Vector2<S> {
+    Vector2::new(m.m11 * v.x + m.m21 * v.y, m.m12 * v.x + m.m22 * v.y)
+}
+
 /// `a` · `b`ᵀ in a plane.
 #[inline(always)]
 pub(crate) fn outer_in_plane<S: Scalar>(a: &Vector2<S>, b: &Vector2<S>) -> Matrix2<S> {
@@ -113,9 +119,9 @@ pub(crate) fn mapped_entries<S: Scalar, T: Scalar>(m: &Matrix3<S>, number: impl 
 
 #[cfg(test)]
 mod tests {
-    use super::{applied, cross, dot, outer, outer_in_plane, product, times, transposed_times};
+    use super::{applied, cross, dot, outer, outer_in_plane, product, times, transposed_in_plane, transposed_times};
     use crate::{SMatrix, SVector, Vector2, Vector3};
-    use nalgebra::Matrix3;
+    use nalgebra::{Matrix2, Matrix3};
 
     #[test]
     fn the_bits_are_those_of_the_library() {
@@ -135,6 +141,8 @@ mod tests {
             assert_eq!(outer(&a, &b), a * b.transpose());
             let [c, d] = [(); 2].map(|()| Vector2::from_fn(|_, _| next()));
             assert_eq!(outer_in_plane(&c, &d), c * d.transpose());
+            let m = Matrix2::from_fn(|_, _| next());
+            assert_eq!(transposed_in_plane(&m, &c), m.tr_mul(&c));
             let (m, v) = (SMatrix::<f32, 2, 4>::from_fn(|_, _| next()), SVector::<f32, 4>::from_fn(|_, _| next()));
             assert_eq!(applied(&m, &v), m * v);
             let (m, v) = (SMatrix::<f32, 7, 7>::from_fn(|_, _| next()), SVector::<f32, 7>::from_fn(|_, _| next()));

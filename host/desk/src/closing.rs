@@ -149,26 +149,33 @@ impl<S: Real> WideGaps<S> {
     #[inline(always)]
     pub fn accept(&mut self, condition: S, next: &Self) {
         let zero = S::zero();
-        let choose = |kept: &mut S, next: S| *kept = condition.select_gt(zero, next, *kept);
         for (kept, next) in self.contacts.iter_mut().zip(&next.contacts) {
-            choose(&mut kept.gap, next.gap);
-            choose(&mut kept.rate, next.rate);
-            choose(&mut kept.speed, next.speed);
-            choose(&mut kept.slack, next.slack);
+            kept.gap = condition.select_gt(zero, next.gap, kept.gap);
+            kept.rate = condition.select_gt(zero, next.rate, kept.rate);
+            kept.speed = condition.select_gt(zero, next.speed, kept.speed);
+            kept.slack = condition.select_gt(zero, next.slack, kept.slack);
         }
-        choose(&mut self.spin, next.spin);
+        self.spin = condition.select_gt(zero, next.spin, self.spin);
     }
 
     /// The least gap (m) of each unit; infinite without contacts.
     #[inline(always)]
     pub fn least(&self) -> S {
-        self.contacts.iter().fold(S::from_f64(f64::INFINITY), |least, contact| least.at_most(contact.gap))
+        let mut least = S::from_f64(f64::INFINITY);
+        for contact in &self.contacts {
+            least = least.at_most(contact.gap);
+        }
+        least
     }
 
     /// The greatest slack of each unit: 0 where [`until_pushed`](Self::until_pushed) has nothing to say.
     #[inline(always)]
     pub fn slack(&self) -> S {
-        self.contacts.iter().fold(S::zero(), |most, contact| most.max_of(contact.slack))
+        let mut most = S::zero();
+        for contact in &self.contacts {
+            most = most.max_of(contact.slack);
+        }
+        most
     }
 
     /// [`Gaps::until_pushed`] of the unit on a `lane`.
@@ -180,8 +187,11 @@ impl<S: Real> WideGaps<S> {
     #[inline(always)]
     pub fn may_act(&self, after: &Self, length: S) -> S {
         let most = most_left_out(self.spin.max_of(after.spin) * length);
-        let ends = self.contacts.iter().zip(&after.contacts);
-        ends.fold(S::zero(), |may, (from, to)| may_act(may, &[*from, *to], length, most))
+        let mut may = S::zero();
+        for (from, to) in self.contacts.iter().zip(&after.contacts) {
+            may = may_act(may, &[*from, *to], length, most);
+        }
+        may
     }
 
     /// [`between`] of the unit on a `lane`.

@@ -158,8 +158,13 @@ pub trait Spinning<S: Scalar, const D: usize>: Bodies<S, D> {
 impl<S: Real, const D: usize> Spinning<S, D> for PlanarTree<S, D> {
     #[inline(always)]
     fn fastest(&self, placed: &planar::Placed<S, D>) -> S {
-        let turning = self.topology().iter().zip(&placed.rates).filter(|(kind, _)| **kind == planar::Kind::Turn);
-        turning.fold(S::zero(), |most, (_, rate)| rate.magnitude().max_of(most))
+        let mut most = S::zero();
+        for (kind, rate) in self.topology().iter().zip(&placed.rates) {
+            if *kind == planar::Kind::Turn {
+                most = rate.magnitude().max_of(most);
+            }
+        }
+        most
     }
 }
 
@@ -192,7 +197,10 @@ fn approach<
 ) {
     let seen = link.seen(at, &link.view(at.0, at.1));
     // No less than the length of the rate.
-    let speed = seen.rate.iter().fold(S::zero(), |sum, rate| sum + rate.max_of(-*rate));
+    let mut speed = S::zero();
+    for rate in &seen.rate {
+        speed += rate.max_of(-*rate);
+    }
     let (mut walls, mut count) = ([(S::zero(), S::zero()); MOST_WALLS], 0);
     law.each_gap(&seen.place, &seen.rate, |gap, rate| {
         walls[count] = (gap, rate);
@@ -305,6 +313,7 @@ impl<const D: usize, S: Real> Elements<S, PlanarTree<S, D>, D> for PlanarElement
         }
     }
 
+    #[inline(always)]
     fn remembered(&self, (_, placed): Planar<S, D>, angles: &Angles<D, S>) -> Angles<D, S> {
         let mut next = *angles;
         if let Self::Spring((Element { link: planar::Turning { body, against }, .. }, starts)) = self {
@@ -322,6 +331,7 @@ impl<const D: usize, S: Real> Elements<S, PlanarTree<S, D>, D> for PlanarElement
         Angles(std::array::from_fn(|k| base.0[k] + (to.0[k] - from.0[k]) * weight))
     }
 
+    #[inline(always)]
     fn accept(&self, condition: S, next: &Angles<D, S>, kept: &mut Angles<D, S>) {
         for (kept, next) in kept.0.iter_mut().zip(next.0) {
             *kept = next.or_old(condition, *kept);

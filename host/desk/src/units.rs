@@ -18,7 +18,7 @@ use slipfit_system::interrupt;
 
 use crate::{
     closing::WideGaps,
-    element::{PlanarElement, Touching, Spinning},
+    element::{PlanarElement, Spinning, Touching},
     error_control::{Accelerations, Effort, Pace, STEPS_PER_LOOK, Stopped},
     pack::Pack,
     plant::{Allowed, Reported},
@@ -55,7 +55,6 @@ pub trait Witness<P, const D: usize> {
     /// Hears what the whole motion took, or why it was stopped.
     fn hear(&mut self, effort: Result<Effort, Stopped>);
 }
-
 
 /// Where bodies are, of as many units as there are lanes.
 pub trait WidePose<P> {

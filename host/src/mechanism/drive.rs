@@ -171,7 +171,9 @@ impl NamedDrive {
     /// How much faster (m/s) the point where it acts goes along its axis than the one whose speed it controls.
     pub fn beyond(&self, spin: Vector3<f64>, turned: impl Fn(Vector3<f64>) -> Vector3<f64>) -> f64 {
         match self.action {
-            Action::Pushes { axis } if self.at_centre => spin.cross(&turned(self.drive.point_b)).dot(&Vector3::from(axis)),
+            Action::Pushes { axis } if self.at_centre => {
+                spin.cross(&turned(self.drive.point_b)).dot(&Vector3::from(axis))
+            }
             _ => 0.0,
         }
     }

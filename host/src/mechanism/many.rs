@@ -56,7 +56,8 @@ fn alone(Made { mechanism, gaps }: &Made) -> Result<MechanismRun, RunError> {
 /// lines and contoured walls run one by one.
 fn shares(mechanism: &Mechanism) -> bool {
     let by_ramp = |named: &NamedDrive| named.sampling.is_none() && named.command.is_none();
-    let by_coulomb = |joint: &Joint| matches!(joint.laws.friction, SlidingData::Coulomb(_)) && joint.walls.is_parallel();
+    let by_coulomb =
+        |joint: &Joint| matches!(joint.laws.friction, SlidingData::Coulomb(_)) && joint.walls.is_parallel();
     let by_turn = |spring: &Spring| matches!(spring.kind, SpringKind::Torsion { .. });
     mechanism.planar
         && mechanism.drives.iter().all(by_ramp)
@@ -140,5 +141,72 @@ impl<P: Copy, const D: usize> Witness<P, D> for Judge<'_, P, D> {
         {
             *self = Self::Has(recorder.finished(steps, Duration::ZERO, None));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Found, Made, alone, run_many};
+    use crate::{
+        mechanism::{MechanismRun, Parameter, SlidingData},
+        scene::{Override, SceneFile, shipped},
+        setup::Adjustable as _,
+    };
+
+    /// `count` units of a shipped mechanism with these settings, each with gaps, friction and masses of its own.
+    fn units(name: &str, set: &[&str], count: usize) -> Vec<Made> {
+        let set: Vec<_> = set.iter().map(|set| Override::set(set)).collect();
+        let mechanism = SceneFile::parse(name, shipped(name).unwrap(), &set).unwrap().mechanism.unwrap();
+        let mut seed = 5u32;
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            3.0 * (f64::from(seed) / 4_294_967_296.0 - 0.5)
+        };
+        let unit = |_| {
+            let levels: Vec<f64> = mechanism.gaps.iter().map(|_| next()).collect();
+            let mut own = mechanism.clone();
+            Parameter::Friction.vary(&mut own, 0.01 * next());
+            Parameter::Mass(0).vary(&mut own, 0.05 * mechanism.bodies[0].mass * next());
+            Made { gaps: own.gaps_at(&levels).unwrap(), mechanism: own }
+        };
+        (0..count).map(unit).collect()
+    }
+
+    /// All that is found of units but the time that it took.
+    fn told(found: Found) -> Vec<String> {
+        let one = |run: MechanismRun| {
+            let MechanismRun { outcomes, energy_excess, sunk, effort, .. } = run;
+            format!("{outcomes:?} {energy_excess:?} {sunk:?} {effort:?}")
+        };
+        found.into_iter().map(|run| one(run.unwrap())).collect()
+    }
+
+    /// What is found of units depends neither on how many are moved at a time, nor on which are moved together.
+    fn compare(name: &str, set: &[&str]) {
+        let mut made = units(name, set, 19);
+        // One that is not like the others.
+        made[7].mechanism.joints.iter_mut().for_each(|joint| joint.laws.friction = SlidingData::NONE);
+        let expected = told(made.iter().map(alone).collect());
+        for lanes in [1, 4, 8] {
+            assert_eq!(told(run_many(&made, lanes)), expected, "{name}");
+            assert_eq!(told(run_many(&made[3..6], lanes)), expected[3..6], "{name}");
+        }
+        assert_ne!(expected[0], expected[1]);
+    }
+
+    #[test]
+    fn units_that_are_moved_together_have_the_bits_that_they_have_alone() {
+        compare("slider-crank", &["run.duration=0.3"]);
+        compare("four-bar", &["run.duration=0.3"]);
+        compare("slider-crank-guide", &["run.duration=0.3"]);
+        compare("woodpecker-toy", &["run.duration=0.3"]);
+    }
+
+    #[test]
+    fn so_have_those_with_a_drive_train() {
+        let train =
+            ["limit=0.4", "viscous=1e-3", "coulomb=0.02", "stick_band=1"].map(|key| format!("drive.motor.{key}"));
+        let set: Vec<&str> = train.iter().map(String::as_str).chain(["run.duration=0.3"]).collect();
+        compare("slider-crank", &set);
     }
 }

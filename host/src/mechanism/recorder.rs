@@ -177,9 +177,7 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
     /// Whether a drive has run away: it does so until no number is large enough, so that the run ends there.
     fn has_run_away(&self) -> bool {
         let mut drives = self.mechanism.drives.iter().zip(&self.drives);
-        drives.any(|(named, knots)| {
-            knots.last().is_some_and(|knot| has_run_away(knot.values.vz, named.drive.speed))
-        })
+        drives.any(|(named, knots)| knots.last().is_some_and(|knot| has_run_away(knot.values.vz, named.drive.speed)))
     }
 
     /// What is known of the run, whose integration took this time and these `steps`, or was stopped; how it moves, if it is to be `told`.

@@ -44,7 +44,11 @@ pub fn run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismR
 /// # Errors
 /// See [`RunError`].
 pub fn film(mechanism: &Mechanism, gaps: &[f64], count: usize) -> Result<MechanismRun, RunError> {
-    run_by(mechanism, gaps, By { controller: None, told: Some(Telling { every: mechanism.run.duration, moments: count }) })
+    run_by(
+        mechanism,
+        gaps,
+        By { controller: None, told: Some(Telling { every: mechanism.run.duration, moments: count }) },
+    )
 }
 
 /// The same by the steps of its controller, in double precision. Only implicit schemes are known; implicit Euler stands for the

@@ -6,8 +6,11 @@ use slipfit_core::{
     pose::Pose,
     system::{
         Bodies, Reduced,
-        planar::{At, PlanarTree, Placed as InPlanePlaced, Point},
-        spatial::{FreeBodies, PlacedBody, tree::{Placed as OnJointsPlaced, SpatialTree}},
+        planar::{At, Placed as InPlanePlaced, PlanarTree, Point},
+        spatial::{
+            FreeBodies, PlacedBody,
+            tree::{Placed as OnJointsPlaced, SpatialTree},
+        },
     },
 };
 use slipfit_desk::element::next_to;

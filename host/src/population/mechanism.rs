@@ -122,12 +122,7 @@ fn together(driven: &ByDrive, drawn: &Drawn, asked: &[usize]) -> Result<Vec<(Uni
 }
 
 /// What the run of unit `i` found, run again where that is in doubt; and whether it was.
-fn judged(
-    driven: &ByDrive,
-    drawn: &Drawn,
-    i: usize,
-    found: &MechanismRun,
-) -> Result<(Outcome, bool), SimulateError> {
+fn judged(driven: &ByDrive, drawn: &Drawn, i: usize, found: &MechanismRun) -> Result<(Outcome, bool), SimulateError> {
     let outcome = found.outcomes[driven.index()];
     let has_energy_from_nowhere = found.energy_excess.is_nan() || found.energy_excess > ENERGY;
     let is_doubtful = is_near_a_limit(outcome.share) || outcome.swings.is_some() || has_energy_from_nowhere;

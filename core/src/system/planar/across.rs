@@ -10,6 +10,7 @@ use super::{
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
+    product::{applied, transposed_in_plane},
     system::{GradientLink, Seen},
 };
 
@@ -26,6 +27,16 @@ pub struct Across<S, const D: usize, P = Chain<D>, Q = Chain<D>> {
 }
 
 crate::cast::cast!([] [D] Across: Across<f64, D> => T Across<T, D> { point, seat, normal });
+
+/// The `columns` in these axes.
+#[inline(always)]
+fn in_axes<S: Scalar, const D: usize>(axes: &Matrix2<S>, columns: &[Vector2<S>; D]) -> SMatrix<S, 2, D> {
+    let mut turned = SMatrix::<S, 2, D>::zeros();
+    for (turned, column) in turned.data.0.iter_mut().zip(columns) {
+        *turned = transposed_in_plane(axes, column).data.0[0];
+    }
+    turned
+}
 
 impl<S: Scalar, const D: usize, P, Q: Carrier<D>> Across<S, D, P, Q> {
     /// The axes in the frame.
@@ -62,7 +73,7 @@ impl<S: Scalar, J: Topology<D>, P: Carrier<D>, Q: Carrier<D>, const D: usize> Gr
         if let Some(turn) = self.seat.carrier.turn() {
             rate -= left(&apart) * placed.rates[turn];
         }
-        Seen { place: axes.tr_mul(&apart), rate: axes.tr_mul(&rate) }
+        Seen { place: transposed_in_plane(&axes, &apart), rate: transposed_in_plane(&axes, &rate) }
     }
 
     #[inline(always)]
@@ -72,7 +83,7 @@ impl<S: Scalar, J: Topology<D>, P: Carrier<D>, Q: Carrier<D>, const D: usize> Gr
         if let Some(turn) = self.seat.carrier.turn() {
             columns[turn] -= left(&(pair.point.place - pair.seat.place));
         }
-        SMatrix::<S, 2, D>::from_columns(&columns.map(|column| axes.tr_mul(&column)))
+        in_axes(&axes, &columns)
     }
 
     #[inline(always)]
@@ -83,7 +94,7 @@ impl<S: Scalar, J: Topology<D>, P: Carrier<D>, Q: Carrier<D>, const D: usize> Gr
         force: &SVector<S, 2>,
         sum: &mut SVector<S, D>,
     ) {
-        let force = self.axes(placed) * force;
+        let force = applied(&self.axes(placed), force);
         pair.add_force(&force, sum);
         if let Some(turn) = self.seat.carrier.turn() {
             sum[turn] -= left(&(pair.point.place - pair.seat.place)).dot(&force);
@@ -99,7 +110,7 @@ impl<S: Scalar, J: Topology<D>, P: Carrier<D>, Q: Carrier<D>, const D: usize> Gr
         force: &SVector<S, 2>,
         stiffness: &mut SMatrix<S, D, D>,
     ) {
-        let force = self.axes(placed) * force;
+        let force = applied(&self.axes(placed), force);
         pair.add_carried(tree.topology(), placed, &force, stiffness);
         if let Some(turn) = self.seat.carrier.turn() {
             // With y from seat to point the coordinate is Rᵀy: its second derivatives have −left(∂y) twice and −y once.
@@ -137,6 +148,6 @@ impl<S: Scalar, J: Topology<D>, P: Carrier<D>, Q: Carrier<D>, const D: usize> Gr
             swept[turn] -= left(&velocity);
         }
         let axes = self.axes(placed);
-        SMatrix::<S, 2, D>::from_columns(&swept.map(|column| axes.tr_mul(&column)))
+        in_axes(&axes, &swept)
     }
 }
