@@ -200,8 +200,8 @@ impl Groups {
             };
             let kind = Kind::of(contact, laws);
             match groups.alike.iter_mut().find(|(of, _)| *of == kind) {
-                Some((_, alike)) => alike.push(contact.clone()),
-                None => groups.alike.push((kind, vec![contact.clone()])),
+                Some((_, alike)) => alike.push(*contact),
+                None => groups.alike.push((kind, vec![*contact])),
             }
         }
         groups
@@ -223,7 +223,7 @@ impl ByLane {
     fn new(groups: Groups) -> Self {
         let mut lanes = array::from_fn(|_| Vec::new());
         let rest = groups.fours(|_, four| {
-            lanes.iter_mut().zip(four).for_each(|(lane, contact): (&mut Vec<_>, _)| lane.push(contact.clone()));
+            lanes.iter_mut().zip(four).for_each(|(lane, contact): (&mut Vec<_>, _)| lane.push(*contact));
             true
         });
         Self { lanes, rest }

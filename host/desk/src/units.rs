@@ -9,9 +9,8 @@ use std::ops::ControlFlow;
 use pulp::{Simd, WithSimd};
 use slipfit_core::{
     Cast, SVector, Scalar as _,
-    integrator::{Dense, Integrator, Motion, MotionOf, Rodas4, Step},
+    integrator::{Dense, Integrator, Motion, Rodas4, Step},
     mechanism::Mechanism,
-    pose::{Orientation, Pose},
     system::{Bodies, System, planar::PlanarTree},
 };
 use slipfit_system::interrupt;
@@ -19,7 +18,7 @@ use slipfit_system::interrupt;
 use crate::{
     closing::WideGaps,
     element::{PlanarElement, Spinning, Touching},
-    error_control::{Accelerations, Effort, Pace, STEPS_PER_LOOK, Stopped},
+    error_control::{Accelerations, Effort, FIRST_STEP, Pace, STEPS_PER_LOOK, Stopped},
     pack::Pack,
     plant::{Allowed, Reported},
     real::Real,
@@ -81,31 +80,6 @@ impl<S: Real, const D: usize> WidePose<[[f64; 2]; D]> for [[S; 2]; D] {
     fn put(&mut self, lane: usize, pose: &[[f64; 2]; D]) {
         for (numbers, pair) in self.iter_mut().zip(pose) {
             numbers.iter_mut().zip(pair).for_each(|(number, x)| number.set(lane, *x));
-        }
-    }
-}
-
-impl<S: Real, const N: usize> WidePose<[Pose<f64>; N]> for [Pose<S>; N] {
-    fn everywhere(poses: &[Pose<f64>; N]) -> Self {
-        let mut wide = [Pose::nominal(); N];
-        (0..S::UNITS).for_each(|lane| wide.put(lane, poses));
-        wide
-    }
-
-    #[inline(always)]
-    fn of_unit(&self, lane: usize) -> [Pose<f64>; N] {
-        let number = |number: S| number.get(lane);
-        self.map(|Pose { displacement_w, orientation: Orientation { w, v } }| Pose {
-            displacement_w: displacement_w.map(number),
-            orientation: Orientation { w: number(w), v: v.map(number) },
-        })
-    }
-
-    fn put(&mut self, lane: usize, poses: &[Pose<f64>; N]) {
-        for (wide, pose) in self.iter_mut().zip(poses) {
-            wide.displacement_w.iter_mut().zip(&pose.displacement_w).for_each(|(number, x)| number.set(lane, *x));
-            wide.orientation.v.iter_mut().zip(&pose.orientation.v).for_each(|(number, x)| number.set(lane, *x));
-            wide.orientation.w.set(lane, pose.orientation.w);
         }
     }
 }
@@ -199,6 +173,191 @@ fn of_lane<S: Real, P, W: WidePose<P>, R, const D: usize>(
 /// The most lanes of a register.
 const MOST_LANES: usize = 8;
 
+/// Units on lanes, with poses `P` and what their laws remember, `R`.
+struct Lanes<V: Simd, P, R, const D: usize> {
+    /// Which unit is on each lane, and how far it is; none where there are no more.
+    on: Vec<Option<(usize, Pace)>>,
+    /// Whose numbers are on each lane, also where the unit has ended.
+    sources: Vec<usize>,
+    /// The first unit that no lane has had.
+    next: usize,
+    motion: Motion<Wide<V>, P, R, D>,
+    before: WideGaps<Wide<V>>,
+    after: WideGaps<Wide<V>>,
+}
+
+/// The next step of each unit.
+struct NextStep<V: Simd> {
+    /// When (s) it starts.
+    t: Wide<V>,
+    /// Length (s).
+    length: Wide<V>,
+    /// When (s) it ends at the latest.
+    limits: [f64; MOST_LANES],
+}
+
+/// The motion at the ends of steps, and their accelerations.
+type Ended<'a, V, P, R, const D: usize> = (&'a Motion<Wide<V>, P, R, D>, &'a [SVector<Wide<V>, D>; 2]);
+
+// No closures in what is hot: they are compiled without the instructions of the function that they are in.
+impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
+    /// Puts units on the lanes that have none; 1 where there is a fresh one.
+    fn load<B: Bodies<f64, D>, E>(&mut self, units: &[Unit<B, E, D>]) -> Wide<V>
+    where
+        P: WidePose<B::Pose>,
+    {
+        let mut fresh = Wide::<V>::splat(0.0);
+        for (lane, on) in self.on.iter_mut().enumerate() {
+            if let (None, Some(unit)) = (&on, units.get(self.next)) {
+                *on = Some((self.next, Pace::default()));
+                self.sources[lane] = self.next;
+                self.next += 1;
+                let (pose, velocity) = &unit.start;
+                self.motion.pose.put(lane, pose);
+                self.motion.velocity.iter_mut().zip(velocity).for_each(|(number, x)| number.set(lane, *x));
+                fresh.set(lane, 1.0);
+            }
+        }
+        fresh
+    }
+
+    /// Whether units are on lanes, and on all of them as long as there are more of `count`.
+    fn are_at_work(&self, count: usize) -> bool {
+        let mut on = self.on.iter();
+        if self.next < count { on.all(Option::is_some) } else { on.any(Option::is_some) }
+    }
+
+    /// Looks at `fresh` units where they start.
+    #[inline(always)]
+    fn begin<B, E, W, F>(&mut self, system: &System<W, &[F]>, fresh: Wide<V>, units: &mut [Unit<B, E, D>])
+    where
+        B: Bodies<f64, D>,
+        W: Spinning<Wide<V>, D, Pose = P>,
+        F: Touching<Wide<V>, W, D, Internal = R>,
+        P: WidePose<B::Pose>,
+    {
+        let (pose, forgotten) = (self.motion.pose, R::default());
+        system.accept(fresh, (&pose, &forgotten), (&mut self.motion.pose, &mut self.motion.internal));
+        watch(system, &self.motion.pose, &self.motion.velocity, &mut self.after);
+        if self.before.contacts.len() != self.after.contacts.len() {
+            self.before.clone_from(&self.after);
+        }
+        self.before.accept(fresh, &self.after);
+        let least = self.before.least();
+        for (lane, on) in self.on.iter_mut().enumerate() {
+            if let (Some((unit, _)), true) = (&on, fresh.get(lane) > 0.0) {
+                let Unit { witness, duration, .. } = &mut units[*unit];
+                let start = of_lane(&self.motion, lane);
+                if witness.see(0.0, &start, None, least.get(lane)).is_break() || *duration <= 0.0 {
+                    witness.hear(Ok(Effort::default()));
+                    *on = None;
+                }
+            }
+        }
+    }
+
+    /// The next step of each unit; lanes without one stand still.
+    #[inline(always)]
+    fn next_step<B: Bodies<f64, D>, E>(&self, units: &[Unit<B, E, D>]) -> NextStep<V> {
+        let mut next = NextStep { t: Wide::splat(0.0), length: Wide::splat(FIRST_STEP), limits: [0.0; MOST_LANES] };
+        for (lane, on) in self.on.iter().enumerate() {
+            if let Some((unit, pace)) = on {
+                let Unit { duration, allowed, .. } = &units[*unit];
+                let (length, limit) = pace.next(*duration, allowed.bends);
+                next.t.set(lane, pace.t);
+                next.length.set(lane, length);
+                next.limits[lane] = limit;
+            }
+        }
+        next
+    }
+
+    /// 1 for units whose `step` is good enough.
+    #[inline(always)]
+    fn judge<B, E, W, F>(
+        &mut self,
+        system: &System<W, &[F]>,
+        step: &Step<Wide<V>, P, R, D>,
+        next: &NextStep<V>,
+        units: &mut [Unit<B, E, D>],
+    ) -> Wide<V>
+    where
+        B: Bodies<f64, D>,
+        W: Spinning<Wide<V>, D, Pose = P>,
+        F: Touching<Wide<V>, W, D, Internal = R>,
+    {
+        let mut good = Wide::splat(0.0);
+        let Step { residual, error, drift, motion: end } = step;
+        let probe = system.finiteness_probe(&end.pose) + end.velocity.sum() * good;
+        for (lane, on) in self.on.iter_mut().enumerate() {
+            let Some((unit, pace)) = on else { continue };
+            let reported = Reported { residual: residual.get(lane), error: error.get(lane), drift: drift.get(lane) };
+            let length = next.length.get(lane);
+            let error = (units[*unit].allowed.error)(reported, length) + probe.get(lane);
+            match pace.is_good(error, length, Rodas4::ORDER) {
+                Ok(is_good) => good.set(lane, if is_good { 1.0 } else { 0.0 }),
+                Err(stopped) => {
+                    units[*unit].witness.hear(Err(stopped));
+                    *on = None;
+                }
+            }
+        }
+        watch(system, &end.pose, &end.velocity, &mut self.after);
+        let may_act = self.before.may_act(&self.after, next.length);
+        for (lane, on) in self.on.iter_mut().enumerate() {
+            if let (Some((unit, pace)), true) = (on, good.get(lane) > 0.0 && may_act.get(lane) != 0.0) {
+                let length = next.length.get(lane);
+                let between = self.before.between(&self.after, lane, length, units[*unit].allowed.depth);
+                if pace.is_shortened(between, length) {
+                    good.set(lane, 0.0);
+                }
+            }
+        }
+        good
+    }
+
+    /// Takes the `good` steps, which end with the motion `end` and have these `accelerations`.
+    #[inline(always)]
+    fn accept<B, E, W, F>(
+        &mut self,
+        system: &System<W, &[F]>,
+        (end, accelerations): Ended<V, P, R, D>,
+        (good, next): (Wide<V>, &NextStep<V>),
+        units: &mut [Unit<B, E, D>],
+    ) where
+        B: Bodies<f64, D>,
+        W: Spinning<Wide<V>, D, Pose = P>,
+        F: Touching<Wide<V>, W, D, Internal = R>,
+        P: WidePose<B::Pose>,
+    {
+        let Self { motion, before, after, on, .. } = self;
+        system.accept(good, (&end.pose, &end.internal), (&mut motion.pose, &mut motion.internal));
+        for (kept, new) in motion.velocity.iter_mut().zip(&end.velocity) {
+            *kept = good.select_gt(Wide::splat(0.0), *new, *kept);
+        }
+        before.accept(good, after);
+        let (least, slack) = (before.least(), before.slack());
+        for (lane, on) in on.iter_mut().enumerate() {
+            let (Some((unit, pace)), true) = (&mut *on, good.get(lane) > 0.0) else { continue };
+            let Unit { duration, allowed, witness, .. } = &mut units[*unit];
+            let pushed = if slack.get(lane) > 0.0 { before.until_pushed(lane, allowed.depth) } else { f64::INFINITY };
+            pace.accept(next.length.get(lane), next.limits[lane], pushed);
+            let rates = accelerations.each_ref().map(|rates| rates.map(|rate| rate.get(lane)));
+            let flow = witness.see(pace.t, &of_lane(motion, lane), Some(rates), least.get(lane));
+            if flow.is_break() || pace.t >= *duration {
+                witness.hear(Ok(pace.effort));
+                *on = None;
+            }
+        }
+    }
+
+    /// Tells units that have not come to their ends that somebody asked to stop.
+    fn interrupt<B: Bodies<f64, D>, E>(&self, units: &mut [Unit<B, E, D>]) {
+        let begun = self.on.iter().flatten().map(|(unit, _)| *unit);
+        begun.chain(self.next..units.len()).for_each(|unit| units[unit].witness.hear(Err(Stopped::Interrupted)));
+    }
+}
+
 /// Moves the `units`, which are alike. That the machine has them is what `_instructions` prove.
 #[inline(always)]
 fn integrate<V: Simd, B, E, const D: usize>(_instructions: V, units: &mut [Unit<B, E, D>])
@@ -208,134 +367,42 @@ where
     WideOf<V, B>: Spinning<Wide<V>, D, Pose: WidePose<B::Pose>>,
     WideOf<V, E>: Touching<Wide<V>, WideOf<V, B>, D, Internal: Default>,
 {
-    let zero = Wide::<V>::splat(0.0);
-    let lanes = Wide::<V>::LANES;
     let Some(first) = units.first() else { return };
-    let mut sources = vec![0; lanes];
-    let mut motion: MotionOf<Wide<V>, WideSystem<V, B, E>, D> = Motion {
-        pose: WidePose::everywhere(&first.start.0),
-        velocity: SVector::zeros(),
-        acceleration: SVector::zeros(),
-        internal: Default::default(),
+    let still = SVector::zeros();
+    let pose = WidePose::everywhere(&first.start.0);
+    let mut all = Lanes {
+        on: vec![None; Wide::<V>::LANES],
+        sources: vec![0; Wide::<V>::LANES],
+        next: 0,
+        motion: Motion { pose, velocity: still, acceleration: still, internal: Default::default() },
+        before: WideGaps::default(),
+        after: WideGaps::default(),
     };
-    // Which unit is on each lane, and how far it is; none where there are no more.
-    let mut on: Vec<Option<(usize, Pace)>> = vec![None; lanes];
-    let (mut before, mut after) = (WideGaps::default(), WideGaps::default());
-    let mut next = 0;
     let mut steps: u32 = 0;
     loop {
-        // Puts units on the lanes that have none.
-        let mut fresh = zero;
-        for lane in 0..lanes {
-            if on[lane].is_none() && next < units.len() {
-                on[lane] = Some((next, Pace::default()));
-                sources[lane] = next;
-                let (pose, velocity) = &units[next].start;
-                motion.pose.put(lane, pose);
-                motion.velocity.iter_mut().zip(velocity).for_each(|(number, x)| number.set(lane, *x));
-                fresh.set(lane, 1.0);
-                next += 1;
-            }
-        }
-        if on.iter().all(Option::is_none) {
+        let fresh = all.load(units);
+        if !all.are_at_work(units.len()) {
             return;
         }
-        let (bodies, elements) = gathered::<V, _, _, D>(units, &sources);
+        let (bodies, elements) = gathered::<V, _, _, D>(units, &all.sources);
         let system: WideSystem<V, B, E> = System::new(bodies, &elements[..]);
-        let (pose, forgotten) = (motion.pose, Mechanism::<Wide<V>, D>::fresh(&system));
-        system.accept(fresh, (&pose, &forgotten), (&mut motion.pose, &mut motion.internal));
-        watch(&system, &motion.pose, &motion.velocity, &mut after);
-        if before.contacts.len() != after.contacts.len() {
-            before.clone_from(&after);
-        }
-        before.accept(fresh, &after);
-        let least = before.least();
-        for lane in 0..lanes {
-            if let (Some((unit, _)), true) = (on[lane], fresh.get(lane) > 0.0) {
-                let Unit { witness, duration, .. } = &mut units[unit];
-                let start = of_lane(&motion, lane);
-                if witness.see(0.0, &start, None, least.get(lane)).is_break() || *duration <= 0.0 {
-                    witness.hear(Ok(Effort::default()));
-                    on[lane] = None;
-                }
-            }
-        }
+        all.begin(&system, fresh, units);
         let mut at_start = None;
-        while on.iter().all(|lane| lane.is_some() || next >= units.len()) && on.iter().any(Option::is_some) {
+        while all.are_at_work(units.len()) {
             if steps.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
-                let begun = on.iter().flatten().map(|(unit, _)| *unit);
-                begun.chain(next..units.len()).for_each(|unit| units[unit].witness.hear(Err(Stopped::Interrupted)));
-                return;
+                return all.interrupt(units);
             }
             steps = steps.wrapping_add(1);
-            let (mut t, mut length) = (zero, Wide::splat(1e-6));
-            let mut limits = [0.0; MOST_LANES];
-            for (lane, on) in on.iter().enumerate() {
-                if let Some((unit, pace)) = on {
-                    let Unit { duration, allowed, .. } = &units[*unit];
-                    let (next, limit) = pace.next(*duration, allowed.bends);
-                    t.set(lane, pace.t);
-                    length.set(lane, next);
-                    limits[lane] = limit;
-                }
-            }
-            // No closures in what is hot: they are compiled without the instructions of the function that they are in.
+            let next = all.next_step(units);
+            let Motion { pose, velocity, internal, .. } = &all.motion;
             let here = match at_start {
                 Some(here) => here,
-                None => system.differentiated(t, &motion.pose, &motion.internal, &motion.velocity),
+                None => system.differentiated(next.t, pose, internal, velocity),
             };
-            at_start = Some(here);
-            let (step, accelerations) = Rodas4::dense_step(&system, t, length, &motion, &here);
-            let probe = system.finiteness_probe(&step.motion.pose) + step.motion.velocity.sum() * zero;
-            let Step { residual, error, drift, motion: ref end } = step;
-            let mut good = zero;
-            for lane in 0..lanes {
-                let Some((unit, pace)) = &mut on[lane] else { continue };
-                let step = Reported { residual: residual.get(lane), error: error.get(lane), drift: drift.get(lane) };
-                let length = length.get(lane);
-                let error = (units[*unit].allowed.error)(step, length) + probe.get(lane);
-                match pace.is_good(error, length, Rodas4::ORDER) {
-                    Ok(is_good) => good.set(lane, if is_good { 1.0 } else { 0.0 }),
-                    Err(stopped) => {
-                        units[*unit].witness.hear(Err(stopped));
-                        on[lane] = None;
-                    }
-                }
-            }
-            watch(&system, &end.pose, &end.velocity, &mut after);
-            let may_act = before.may_act(&after, length);
-            for lane in 0..lanes {
-                if let (Some((unit, pace)), true) = (&mut on[lane], good.get(lane) > 0.0 && may_act.get(lane) != 0.0) {
-                    let length = length.get(lane);
-                    let between = before.between(&after, lane, length, units[*unit].allowed.depth);
-                    if pace.is_shortened(between, length) {
-                        good.set(lane, 0.0);
-                    }
-                }
-            }
-            if good == zero {
-                continue;
-            }
-            at_start = None;
-            system.accept(good, (&end.pose, &end.internal), (&mut motion.pose, &mut motion.internal));
-            for (kept, new) in motion.velocity.iter_mut().zip(&end.velocity) {
-                *kept = good.select_gt(zero, *new, *kept);
-            }
-            before.accept(good, &after);
-            let (least, slack) = (before.least(), before.slack());
-            for lane in 0..lanes {
-                let (Some((unit, pace)), true) = (&mut on[lane], good.get(lane) > 0.0) else { continue };
-                let Unit { duration, allowed, witness, .. } = &mut units[*unit];
-                let pushed =
-                    if slack.get(lane) > 0.0 { before.until_pushed(lane, allowed.depth) } else { f64::INFINITY };
-                pace.accept(length.get(lane), limits[lane], pushed);
-                let rates = accelerations.each_ref().map(|rates| rates.map(|rate| rate.get(lane)));
-                let flow = witness.see(pace.t, &of_lane(&motion, lane), Some(rates), least.get(lane));
-                if flow.is_break() || pace.t >= *duration {
-                    witness.hear(Ok(pace.effort));
-                    on[lane] = None;
-                }
-            }
+            let (step, accelerations) = Rodas4::dense_step(&system, next.t, next.length, &all.motion, &here);
+            let good = all.judge(&system, &step, &next, units);
+            at_start = (good == Wide::splat(0.0)).then_some(here);
+            all.accept(&system, (&step.motion, &accelerations), (good, &next), units);
         }
     }
 }

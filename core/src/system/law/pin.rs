@@ -17,8 +17,6 @@ pub struct Fitted<G, N, F> {
     pub contact: Contact<N, F>,
 }
 
-crate::cast::cast!([G N F] [] Fitted: Fitted<G, N, F> => T Fitted<G::Of<T>, N::Of<T>, F::Of<T>> { gaps, contact });
-
 /// A pin that fits with clearance or interference.
 pub type Pin<S, N, F> = Fitted<[S; 4], N, F>;
 

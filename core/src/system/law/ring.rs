@@ -22,8 +22,6 @@ pub struct Ring<S, N, F> {
     pub contact: Contact<N, F>,
 }
 
-crate::cast::cast!([N F] [] Ring: Ring<f64, N, F> => T Ring<T, N::Of<T>, F::Of<T>> { clearance, contact });
-
 /// Directions about a rod, across it.
 struct Around<S> {
     normal: Vector2<S>,

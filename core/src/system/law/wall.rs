@@ -76,8 +76,6 @@ pub struct Wall<S, N, F> {
     pub contact: Contact<N, F>,
 }
 
-crate::cast::cast!([N F] [] Wall: Wall<f64, N, F> => T Wall<T, N::Of<T>, F::Of<T>> { sign, gap, contact; axis });
-
 impl<S: Scalar, N: Normal<S>, F: Friction<S>> Law<S, 2> for Pad<S, N, F> {
     type Internal = F::Internal;
 

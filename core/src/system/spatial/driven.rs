@@ -24,8 +24,6 @@ pub struct Along<S> {
     pub axis_w: Vector3<S>,
 }
 
-crate::cast::cast!([] [] Along: Along<f64> => T Along<T> { lever, axis_w; body });
-
 /// A point of a body along an axis of the frame, where the speed counts, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtPoint<S> {
@@ -37,8 +35,6 @@ pub struct AtPoint<S> {
     pub axis_w: Vector3<S>,
 }
 
-crate::cast::cast!([] [] AtPoint: AtPoint<f64> => T AtPoint<T> { lever, axis_w; body });
-
 /// How fast a body turns about an axis of the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct About<S> {
@@ -47,8 +43,6 @@ pub struct About<S> {
     /// Direction in the frame, of unit length.
     pub axis_w: Vector3<S>,
 }
-
-crate::cast::cast!([] [] About: About<f64> => T About<T> { axis_w; body });
 
 /// `R` speeds of one body, and how they go by its motion.
 #[derive(Clone, Copy, Debug)]

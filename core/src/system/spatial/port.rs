@@ -11,8 +11,6 @@ pub struct Port<S> {
     pub lever: Vector3<S>,
 }
 
-crate::cast::cast!([] [] Port: Port<f64> => T Port<T> { lever; body });
-
 /// A point of one body as seen from another, in the axes of the latter: displacement (m) since the nominal poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seat<S> {
@@ -21,5 +19,3 @@ pub struct Seat<S> {
     /// The body that it is seen from; `None` for the frame.
     pub from: Option<usize>,
 }
-
-crate::cast::cast!([] [] Seat: Seat<f64> => T Seat<T> { point; from });

@@ -22,8 +22,6 @@ pub struct Rim<S, A = Parallel> {
     pub radius: S,
 }
 
-crate::cast::cast!([A] [] Rim: Rim<f64, A> => T Rim<T, A::Of<T>> { seat, axes, radius });
-
 /// Axes that are not turned: nothing is left of them at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parallel;

@@ -12,7 +12,6 @@ use slipfit_core::{
 
 use super::{Touching, act, act_apart, approach, gap};
 use crate::{
-    cast::cast_variants,
     closing::Approach,
     drive::AnyDrive,
     laws::{AnyNormal, AnySliding},
@@ -20,12 +19,12 @@ use crate::{
 };
 
 /// A wall with a contour and any laws.
-type AnyContouredWall<S> = Contoured<S, Wall<S, AnyNormal<S>, AnySliding<S>>>;
+type AnyContouredWall = Contoured<f64, Wall<f64, AnyNormal<f64>, AnySliding<f64>>>;
 
 /// A ring around a rod whose axes are turned or not.
 type AnyRing<S> = Element<Rim<S, Option<Matrix3<S>>>, Ring<S, AnyNormal<S>, AnySliding<S>>, 3>;
 
-/// A contact in space. A number `S` has a value for each of several contacts, or units, or is one.
+/// A contact in space, or several side by side: a number `S` has a value for each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpatialContact<S = f64> {
     /// A pin between walls.
@@ -36,26 +35,22 @@ pub enum SpatialContact<S = f64> {
     Ring(AnyRing<S>),
 }
 
-cast_variants!([] SpatialContact: SpatialContact => T SpatialContact<T> { Pin, Wall, Ring });
-
 /// An element in space.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SpatialElement<S = f64> {
+pub enum SpatialElement {
     /// A contact.
-    Contact(SpatialContact<S>),
+    Contact(SpatialContact),
     /// A torque.
-    Motor(Element<About<S>, Motor<AnyDrive<S>>, 1>),
+    Motor(Element<About<f64>, Motor<AnyDrive>, 1>),
     /// A force.
-    Pusher(Element<Along<S>, Pusher<AnyDrive<S>>, 2>),
+    Pusher(Element<Along<f64>, Pusher<AnyDrive>, 2>),
     /// A force by the speed where it acts.
-    AtPoint(Element<AtPoint<S>, Motor<AnyDrive<S>>, 1>),
+    AtPoint(Element<AtPoint<f64>, Motor<AnyDrive>, 1>),
     /// A point before a wall with a contour.
-    Contour(Element<Seat<S>, AnyContouredWall<S>, 3>),
+    Contour(Element<Seat<f64>, AnyContouredWall, 3>),
     /// A spring along the line between two points.
-    Line(Element<Seat<S>, LineSpring<S, 3>, 3>),
+    Line(Element<Seat<f64>, LineSpring<f64, 3>, 3>),
 }
-
-cast_variants!([] SpatialElement: SpatialElement => T SpatialElement<T> { Contact, Motor, Pusher, AtPoint, Contour, Line });
 
 /// Bodies in space, and where they are.
 type Free<'a, S, const N: usize, const D: usize> =
@@ -74,9 +69,8 @@ impl SpatialElement {
     }
 }
 
-impl<S: Real, const N: usize, const D: usize> Touching<S, FreeBodies<S, N, D>, D> for SpatialElement<S> {
-    #[inline(always)]
-    fn approach(&self, at: Free<S, N, D>, see: &mut impl FnMut(Approach<S>)) {
+impl<const N: usize, const D: usize> Touching<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
+    fn approach(&self, at: Free<f64, N, D>, see: &mut impl FnMut(Approach)) {
         match self {
             Self::Contact(contact) => contact.approach(at, see),
             Self::Contour(element) => approach((element, &element.law.wall.contact.normal), at, see),
@@ -124,7 +118,7 @@ impl<S: Real, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D
     fn accept(&self, _: S, (): &(), (): &mut ()) {}
 }
 
-impl<S: Real, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialElement<S> {
+impl<const N: usize, const D: usize> Elements<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
     type Internal = ();
 
     const STICKS: bool = false;
@@ -134,11 +128,11 @@ impl<S: Real, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D
     #[inline(always)]
     fn act(
         &self,
-        way: (S, Way<S>),
-        at: (&FreeBodies<S, N, D>, &<FreeBodies<S, N, D> as Bodies<S, D>>::Placed),
+        way: (f64, Way<f64>),
+        at: (&FreeBodies<f64, N, D>, &<FreeBodies<f64, N, D> as Bodies<f64, D>>::Placed),
         (): &(),
         _: Option<&mut ()>,
-        sum: &mut impl Assembly<S, FreeBodies<S, N, D>, D>,
+        sum: &mut impl Assembly<f64, FreeBodies<f64, N, D>, D>,
     ) {
         match self {
             // Inlined: a call from wide instructions costs more than what these do.
@@ -151,7 +145,7 @@ impl<S: Real, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D
         }
     }
 
-    fn shifted(&self, (): &(), (): &(), (): &(), _: S) {}
+    fn shifted(&self, (): &(), (): &(), (): &(), _: f64) {}
 
-    fn accept(&self, _: S, (): &(), (): &mut ()) {}
+    fn accept(&self, _: f64, (): &(), (): &mut ()) {}
 }
