@@ -13,6 +13,7 @@ pub mod element;
 pub mod error_control;
 pub mod laws;
 pub mod out_of_line;
+mod pace;
 pub mod pack;
 pub mod plant;
 pub mod population;

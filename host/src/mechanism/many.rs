@@ -35,6 +35,12 @@ pub struct Made {
 /// What is found of each unit.
 type Found = Vec<Result<MechanismRun, RunError>>;
 
+/// How many units of `mechanism` one thread is to be given at a time: enough that lanes do not wait for long where there are no more, and
+/// few enough that all threads have some.
+pub fn at_a_time(mechanism: &Mechanism) -> usize {
+    if shares(mechanism) && units::lanes(usize::MAX).is_some() { 32 } else { 1 }
+}
+
 /// Runs `made` units, at most `lanes` at a time on one thread. Of none is told how it moves.
 pub fn run_many(made: &[Made], lanes: usize) -> Found {
     let is_shared = made.first().is_some_and(|first| shares(&first.mechanism));

@@ -54,7 +54,7 @@ pub use energy::ENERGY;
 pub use freedom::Freedom;
 pub use gaps::{GapError, Gaps, STOP_MOST, level_of};
 pub use hanging::MountError;
-pub use many::{Made, run_many};
+pub use many::{Made, at_a_time, run_many};
 pub use mounts::Mounts;
 pub use parameter::{Parameter, Uncertain, Varied};
 pub use record::{MechanismRun, Moment, SCHEME, Samples};

@@ -13,7 +13,7 @@ use crate::{
         outcome::{Outcome, Verdict},
         simulate::SimulateError,
     },
-    mechanism::{ByDrive, ENERGY, Made, Mechanism, MechanismRun, confirmed, run, run_many},
+    mechanism::{ByDrive, ENERGY, Made, Mechanism, MechanismRun, at_a_time, confirmed, run, run_many},
     setup::{Adjustable, RunSpec},
 };
 
@@ -45,9 +45,9 @@ impl Subject for ByDrive<'_> {
     }
 
     fn trouble(&self, drawn: &Drawn, i: usize) -> Option<String> {
-        let own = mechanism_of(self.mechanism(), drawn, i);
-        let spec = spec(&own);
-        run(&Mechanism { run: spec, ..own }, &drawn.gaps[i], spec.duration).err().map(|error| error.to_string())
+        let Made { mechanism, gaps } = made(self, drawn, i);
+        let run = run(&mechanism, &gaps, mechanism.run.duration).map_err(SimulateError::from);
+        run.and_then(|run| judged(self, drawn, i, &run)).err().map(|error| error.to_string())
     }
 
     fn gaps_at(&self, n: &[f64]) -> Vec<f64> {
@@ -80,45 +80,39 @@ pub fn mechanism_of(mechanism: &Mechanism, drawn: &Drawn, i: usize) -> Mechanism
     own
 }
 
-/// What is simulated of `own`, a unit.
-fn spec(own: &Mechanism) -> RunSpec {
-    RunSpec { error: own.run.error.max(ERROR), ..own.run }
-}
-
-/// Units that are moved at a time: enough that lanes of the last ones do not wait for long, few enough that all threads have some.
-const TOGETHER: usize = 32;
-
 /// What those of the units that were `drawn` which are `asked` for do, and their final speeds as shares of the command.
 fn units(driven: &ByDrive, drawn: &Drawn, asked: &[usize]) -> Result<Vec<(UnitOutcome, f64)>, SimulateError> {
-    let pieces: Vec<&[usize]> = asked.chunks(TOGETHER).collect();
+    let pieces: Vec<&[usize]> = asked.chunks(at_a_time(driven.mechanism())).collect();
     let found = parallel::try_map(&pieces, |piece| together(driven, drawn, piece))?;
     Ok(found.into_iter().flatten().collect())
 }
 
 /// The same of a few.
 fn together(driven: &ByDrive, drawn: &Drawn, asked: &[usize]) -> Result<Vec<(UnitOutcome, f64)>, SimulateError> {
-    let made = |i: &usize| {
-        let own = mechanism_of(driven.mechanism(), drawn, *i);
-        Made { mechanism: Mechanism { run: spec(&own), ..own }, gaps: drawn.gaps[*i].clone() }
-    };
-    let (fit, misfits): (Vec<usize>, Vec<usize>) = asked.iter().partition(|i| driven.fits(&drawn.gaps[**i]));
-    let made: Vec<Made> = fit.iter().map(made).collect();
-    let runs = run_many(&made, usize::MAX);
-    let mut found: Vec<(usize, (UnitOutcome, f64))> =
-        misfits.into_iter().map(|i| (i, (Fault::Unassembled.outcome(), 0.0))).collect();
-    for (i, run) in fit.into_iter().zip(runs) {
+    let fits = |i: &usize| driven.fits(&drawn.gaps[*i]);
+    let made: Vec<Made> = asked.iter().filter(|i| fits(i)).map(|i| made(driven, drawn, *i)).collect();
+    let mut runs = run_many(&made, usize::MAX).into_iter();
+    let mut found = Vec::with_capacity(asked.len());
+    for i in asked {
         if interrupt::requested() {
             return Err(SimulateError::Interrupted);
         }
-        let judged = run.map_err(SimulateError::from).and_then(|run| judged(driven, drawn, i, &run));
-        let one = match judged {
-            Ok((outcome, at_desk)) => (told(&outcome, at_desk), outcome.share),
-            Err(error) => (Fault::of(error)?.outcome(), 0.0),
-        };
-        found.push((i, one));
+        found.push(match if fits(i) { runs.next() } else { None } {
+            None => (Fault::Unassembled.outcome(), 0.0),
+            Some(run) => match run.map_err(SimulateError::from).and_then(|run| judged(driven, drawn, *i, &run)) {
+                Ok((outcome, at_desk)) => (told(&outcome, at_desk), outcome.share),
+                Err(error) => (Fault::of(error)?.outcome(), 0.0),
+            },
+        });
     }
-    let of = |i: &usize| found.iter().find(|(k, _)| k == i).map(|(_, one)| *one);
-    Ok(asked.iter().filter_map(of).collect())
+    Ok(found)
+}
+
+/// Unit `i` of those `drawn`, to the tolerance of populations.
+fn made(driven: &ByDrive, drawn: &Drawn, i: usize) -> Made {
+    let own = mechanism_of(driven.mechanism(), drawn, i);
+    let run = RunSpec { error: own.run.error.max(ERROR), ..own.run };
+    Made { mechanism: Mechanism { run, ..own }, gaps: drawn.gaps[i].clone() }
 }
 
 /// What the run of unit `i` found, run again where that is in doubt; and whether it was.

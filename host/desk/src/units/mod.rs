@@ -1,0 +1,239 @@
+//! Many units of a mechanism at a time, each on a lane of the machine's registers, by error-controlled steps.
+//!
+//! Units have the same bodies, joints and laws, and other numbers. Every lane has a time and a step of its own, and takes the next
+//! unit as soon as its own has come to its end. A unit has the bits that it has alone, by
+//! [`integrate`](crate::error_control::integrate).
+
+mod lanes;
+
+use std::ops::ControlFlow;
+
+use pulp::{Simd, WithSimd};
+use slipfit_core::{
+    Cast, SVector,
+    integrator::{Dense, Motion, Rodas4},
+    mechanism::Mechanism,
+    system::{Bodies, System, planar::PlanarTree},
+};
+use slipfit_system::interrupt;
+
+use lanes::Lanes;
+
+use crate::{
+    element::{PlanarElement, Spinning, Touching},
+    error_control::{Accelerations, Effort, STEPS_PER_LOOK, Stopped},
+    pack::Pack,
+    plant::Allowed,
+    real::Real,
+};
+
+/// A unit to be moved: its bodies and what acts on them, where and how fast it starts, and who sees it move.
+pub struct Unit<'a, B: Bodies<f64, D>, E, const D: usize> {
+    /// The bodies.
+    pub bodies: B,
+    /// What acts on them.
+    pub elements: Vec<E>,
+    /// Pose and velocities at the start.
+    pub start: (B::Pose, SVector<f64, D>),
+    /// Simulated time (s).
+    pub duration: f64,
+    /// What a step may err by.
+    pub allowed: Allowed<'a>,
+    /// Who sees it move.
+    pub witness: &'a mut dyn Witness<B::Pose, D>,
+}
+
+/// Who sees a unit move.
+pub trait Witness<P, const D: usize> {
+    /// Sees the start and the end of every step, as [`See`](crate::plant::See) does.
+    fn see(
+        &mut self,
+        t: f64,
+        motion: &Motion<f64, P, (), D>,
+        accelerations: Option<Accelerations<D>>,
+        least_gap: f64,
+    ) -> ControlFlow<()>;
+
+    /// Hears what the whole motion took, or why it was stopped.
+    fn hear(&mut self, effort: Result<Effort, Stopped>);
+}
+
+/// Where bodies are, of as many units as there are lanes.
+pub trait WidePose<P> {
+    /// All units at the same `pose`.
+    fn everywhere(pose: &P) -> Self;
+
+    /// Where those of the unit on a `lane` are.
+    fn of_unit(&self, lane: usize) -> P;
+
+    /// Puts those of the unit on a `lane` there.
+    fn put(&mut self, lane: usize, pose: &P);
+}
+
+impl<S: Real, const D: usize> WidePose<[[f64; 2]; D]> for [[S; 2]; D] {
+    fn everywhere(pose: &[[f64; 2]; D]) -> Self {
+        pose.map(|pair| pair.map(S::from_f64))
+    }
+
+    #[inline(always)]
+    fn of_unit(&self, lane: usize) -> [[f64; 2]; D] {
+        self.map(|pair| pair.map(|number| number.get(lane)))
+    }
+
+    fn put(&mut self, lane: usize, pose: &[[f64; 2]; D]) {
+        for (numbers, pair) in self.iter_mut().zip(pose) {
+            numbers.iter_mut().zip(pair).for_each(|(number, x)| number.set(lane, *x));
+        }
+    }
+}
+
+/// Numbers of some units in the registers of the instructions `V`.
+type Wide<V> = Pack<V, f64>;
+
+/// What `T` is of such numbers.
+type WideOf<V, T> = <T as Cast>::Of<Wide<V>>;
+
+/// The mechanisms of some units.
+type WideSystem<'w, V, B, E> = System<WideOf<V, B>, &'w [WideOf<V, E>]>;
+
+/// Whether two units, each with its bodies and elements, have the same bodies, joints and laws, so that numbers alone differ.
+pub fn are_alike<B, E>(one: (&B, &[E]), other: (&B, &[E])) -> bool
+where
+    B: Cast<Of<f64>: PartialEq>,
+    E: Cast<Of<f64>: PartialEq>,
+{
+    let none = &mut |_| 0.0;
+    one.0.cast(none) == other.0.cast(none)
+        && one.1.len() == other.1.len()
+        && one.1.iter().zip(other.1).all(|(one, other)| one.cast(none) == other.cast(none))
+}
+
+/// The bodies and elements of those of the `units` that are on the lanes: `sources` says which is on each.
+fn gathered<V: Simd, B, E, const D: usize>(
+    units: &[Unit<B, E, D>],
+    sources: &[usize],
+) -> (WideOf<V, B>, Vec<WideOf<V, E>>)
+where
+    B: Cast + Bodies<f64, D>,
+    E: Cast,
+{
+    let mut numbers: Vec<Wide<V>> = Vec::new();
+    for (lane, source) in sources.iter().enumerate() {
+        let mut k = 0;
+        let mut put = |x: f64| {
+            if lane == 0 {
+                numbers.push(Wide::splat(x));
+            } else if let Some(number) = numbers.get_mut(k) {
+                number.set(lane, x);
+            }
+            k += 1;
+            x
+        };
+        let Unit { bodies, elements, .. } = &units[*source];
+        bodies.cast(&mut put);
+        elements.iter().for_each(|element| drop(element.cast(&mut put)));
+    }
+    let mut numbers = numbers.into_iter();
+    let mut next = |_| numbers.next().unwrap_or_default();
+    let Unit { bodies, elements, .. } = &units[sources[0]];
+    (bodies.cast(&mut next), elements.iter().map(|element| element.cast(&mut next)).collect())
+}
+
+/// Moves the `units`, which are alike. That the machine has them is what `_instructions` prove.
+#[inline(always)]
+fn integrate<V: Simd, B, E, const D: usize>(_instructions: V, units: &mut [Unit<B, E, D>])
+where
+    B: Cast<Of<Wide<V>>: Copy> + Bodies<f64, D>,
+    E: Cast,
+    WideOf<V, B>: Spinning<Wide<V>, D, Pose: WidePose<B::Pose>>,
+    WideOf<V, E>: Touching<Wide<V>, WideOf<V, B>, D, Internal: Default>,
+{
+    let Some(first) = units.first() else { return };
+    let still = SVector::zeros();
+    let pose = WidePose::everywhere(&first.start.0);
+    let mut all = Lanes::new(Motion { pose, velocity: still, acceleration: still, internal: Default::default() });
+    let mut steps: u32 = 0;
+    loop {
+        let fresh = all.load(units);
+        if !all.are_at_work(units.len()) {
+            return;
+        }
+        let (bodies, elements) = gathered::<V, _, _, D>(units, &all.sources);
+        let system: WideSystem<V, B, E> = System::new(bodies, &elements[..]);
+        all.begin(&system, fresh, units);
+        let mut at_start = None;
+        while all.are_at_work(units.len()) {
+            if steps.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
+                return all.interrupt(units);
+            }
+            steps = steps.wrapping_add(1);
+            let next = all.next_step(units);
+            let Motion { pose, velocity, internal, .. } = &all.motion;
+            let here = match at_start {
+                Some(here) => here,
+                None => system.differentiated(next.t, pose, internal, velocity),
+            };
+            let (step, accelerations) = Rodas4::dense_step(&system, next.t, next.length, &all.motion, &here);
+            let good = all.judge(&system, &step, &next, units);
+            at_start = (good == Wide::splat(0.0)).then_some(here);
+            all.accept(&system, (&step.motion, &accelerations), (good, &next), units);
+        }
+    }
+}
+
+/// How many units of a mechanism are moved at a time, at most `most`; none where the machine has no registers for several.
+pub fn lanes(most: usize) -> Option<usize> {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if most >= 8 && pulp::x86::V4::try_new().is_some() {
+            return Some(8);
+        }
+        if most >= 4 && pulp::x86::V3::try_new().is_some() {
+            return Some(4);
+        }
+    }
+    None
+}
+
+/// Bodies with elements whose units are moved several at a time.
+pub trait Together<const D: usize>: Bodies<f64, D> + Sized {
+    /// What acts on them.
+    type Element;
+
+    /// Moves `units` that are [alike](are_alike), as many at a time as there are [`lanes`].
+    fn move_together(lanes: usize, units: &mut [Unit<Self, Self::Element, D>]);
+}
+
+/// Units to be moved by wide instructions.
+struct Work<'w, 'a, B: Bodies<f64, D>, E, const D: usize> {
+    units: &'w mut [Unit<'a, B, E, D>],
+}
+
+/// Compiled here, so that what calls it does not compile a step again.
+macro_rules! together {
+    ($($dimension:literal),*) => { $(
+        impl WithSimd for Work<'_, '_, PlanarTree<f64, $dimension>, PlanarElement<$dimension>, $dimension> {
+            type Output = ();
+
+            #[inline(always)]
+            fn with_simd<V: Simd>(self, instructions: V) {
+                integrate(instructions, self.units);
+            }
+        }
+
+        impl Together<$dimension> for PlanarTree<f64, $dimension> {
+            type Element = PlanarElement<$dimension>;
+
+            fn move_together(lanes: usize, units: &mut [Unit<Self, Self::Element, $dimension>]) {
+                #[cfg(target_arch = "x86_64")]
+                match (lanes, pulp::x86::V4::try_new(), pulp::x86::V3::try_new()) {
+                    (8, Some(avx512), _) => Simd::vectorize(avx512, Work { units }),
+                    (_, _, Some(avx2)) => Simd::vectorize(avx2, Work { units }),
+                    _ => {}
+                }
+            }
+        }
+    )* };
+}
+
+together!(3, 6);
