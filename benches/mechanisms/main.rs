@@ -21,7 +21,7 @@ use std::{hint::black_box, process::ExitCode, time::Instant};
 use diffsol_peer::{BDF, FirstOrder};
 use entry::Tolerances;
 use slipfit::{
-    mechanism::{Made, Mechanism, Mounts, planar, run, run_many, spatial},
+    mechanism::{Mechanism, Mounts, ProductionUnit, planar, run, run_units, spatial},
     scene::{Override, SceneFile, shipped},
 };
 use slipfit_core::{
@@ -98,20 +98,20 @@ fn main() -> ExitCode {
 }
 
 /// Some units of `mechanism`, at the tolerance of populations, whose gaps are at as many levels.
-fn units(mut mechanism: Mechanism) -> Vec<Made> {
+fn units(mut mechanism: Mechanism) -> Vec<ProductionUnit> {
     mechanism.run.error = 1e-4;
     let unit = |k: u32| {
         let levels: Vec<f64> =
             (0..mechanism.gaps.len()).map(|gap| f64::from(k * (gap as u32 + 3) % 41) * 0.1 - 2.0).collect();
-        Made { gaps: mechanism.gaps_at(&levels).expect("in bounds"), mechanism: mechanism.clone() }
+        ProductionUnit { gaps: mechanism.gaps_at(&levels).expect("in bounds"), mechanism: mechanism.clone() }
     };
     (0..48).map(unit).collect()
 }
 
 /// Units a second on this thread.
-fn rate(made: &[Made], lanes: usize) -> f64 {
+fn rate(made: &[ProductionUnit], lanes: usize) -> f64 {
     let start = Instant::now();
-    let found = black_box(run_many(made, lanes));
+    let found = black_box(run_units(made, lanes));
     assert!(found.iter().all(Result::is_ok), "every unit is solved");
     made.len() as f64 / start.elapsed().as_secs_f64()
 }

@@ -130,7 +130,7 @@ fn act_out_of_line<S, B, L, W, const D: usize, const R: usize>(
     act(element, way, at, &(), sum);
 }
 
-/// The gap (m) of a contact, which is negative where it is pressed together.
+/// The gap (m) of a contact, which is negative where it is pressed on_lanes.
 fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
     element: &Element<L, W, R>,
     at: (&B, &B::Placed),
@@ -140,24 +140,24 @@ fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize,
 }
 
 /// Elements that may be contacts.
-pub trait Touching<S: Scalar, B: Bodies<S, D>, const D: usize>: Elements<S, B, D> {
+pub trait HasContacts<S: Scalar, B: Bodies<S, D>, const D: usize>: Elements<S, B, D> {
     /// Shows `see` the contacts that it is.
     fn approach(&self, at: (&B, &B::Placed), see: &mut impl FnMut(Approach<S>));
 }
 
-impl<S: Scalar, B: Bodies<S, D>, const D: usize> Touching<S, B, D> for () {
+impl<S: Scalar, B: Bodies<S, D>, const D: usize> HasContacts<S, B, D> for () {
     fn approach(&self, _: (&B, &B::Placed), _: &mut impl FnMut(Approach<S>)) {}
 }
 
 /// Bodies that turn.
-pub trait Spinning<S: Scalar, const D: usize>: Bodies<S, D> {
+pub trait AngularSpeeds<S: Scalar, const D: usize>: Bodies<S, D> {
     /// The greatest angular velocity (rad/s) of a body that is `placed`.
-    fn fastest(&self, placed: &Self::Placed) -> S;
+    fn max_angular_speed(&self, placed: &Self::Placed) -> S;
 }
 
-impl<S: Real, const D: usize> Spinning<S, D> for PlanarTree<S, D> {
+impl<S: Real, const D: usize> AngularSpeeds<S, D> for PlanarTree<S, D> {
     #[inline(always)]
-    fn fastest(&self, placed: &planar::Placed<S, D>) -> S {
+    fn max_angular_speed(&self, placed: &planar::Placed<S, D>) -> S {
         let mut most = S::zero();
         for (kind, rate) in self.topology().iter().zip(&placed.rates) {
             if *kind == planar::Kind::Turn {
@@ -168,9 +168,9 @@ impl<S: Real, const D: usize> Spinning<S, D> for PlanarTree<S, D> {
     }
 }
 
-impl<S: Real, const N: usize, const D: usize> Spinning<S, D> for FreeBodies<S, N, D> {
+impl<S: Real, const N: usize, const D: usize> AngularSpeeds<S, D> for FreeBodies<S, N, D> {
     #[inline(always)]
-    fn fastest(&self, placed: &spatial::Placed<S, N>) -> S {
+    fn max_angular_speed(&self, placed: &spatial::Placed<S, N>) -> S {
         placed.bodies.iter().fold(S::zero(), |most, body| {
             let [x, y, z] = *body.rotation_w.as_ref();
             (x * x + y * y + z * z).sqrt().max_of(most)
@@ -252,7 +252,7 @@ impl<const D: usize> PlanarElement<D> {
     }
 }
 
-impl<const D: usize, S: Real> Touching<S, PlanarTree<S, D>, D> for PlanarElement<D, S> {
+impl<const D: usize, S: Real> HasContacts<S, PlanarTree<S, D>, D> for PlanarElement<D, S> {
     #[inline(always)]
     fn approach(&self, at: Planar<S, D>, see: &mut impl FnMut(Approach<S>)) {
         match self {
@@ -319,8 +319,8 @@ impl<const D: usize, S: Real> Elements<S, PlanarTree<S, D>, D> for PlanarElement
         if let Self::Spring((Element { link: planar::Turning { body, against }, .. }, starts)) = self {
             for (turn, start) in [body, against].into_iter().zip(starts) {
                 if let Some(k) = *turn {
-                    let angle = placed.axes[k].y.by_each(placed.axes[k].x, libm::atan2);
-                    next.0[k] = angle.by_each(*start + angles.0[k], next_to) - *start;
+                    let angle = placed.axes[k].y.zip_map(placed.axes[k].x, libm::atan2);
+                    next.0[k] = angle.zip_map(*start + angles.0[k], next_to) - *start;
                 }
             }
         }

@@ -15,7 +15,7 @@ use slipfit_system::interrupt;
 
 use crate::{
     closing::{self, Gaps},
-    pace::Pace,
+    step_control::StepControl,
 };
 
 /// How well each step has to do.
@@ -182,39 +182,39 @@ pub fn integrate<I: Dense, M: Mechanism<f64, D>, const D: usize>(
     watched: Watched<impl Fn(&MotionOf<f64, M, D>, &mut Gaps)>,
     mut accept: impl FnMut(f64, &MotionOf<f64, M, D>, Option<Accelerations<D>>, &Gaps) -> ControlFlow<()>,
 ) -> Result<Effort, Stopped> {
-    let (mut pace, mut motion) = (Pace::default(), start);
+    let (mut step_control, mut motion) = (StepControl::default(), start);
     let differentiated = |t: f64, motion: &MotionOf<f64, M, D>| {
         mechanism.differentiated(t, &motion.pose, &motion.internal, &motion.velocity)
     };
     let [mut before, mut after] = [Gaps::default(), Gaps::default()];
     (watched.gaps)(&motion, &mut before);
     // First `accept`: a controller that samples there changes what acts from then on.
-    let mut flow = accept(pace.t, &motion, None, &before);
-    let mut at_start = differentiated(pace.t, &motion);
-    while pace.t < duration && flow.is_continue() {
-        if pace.tried().is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
+    let mut flow = accept(step_control.t, &motion, None, &before);
+    let mut at_start = differentiated(step_control.t, &motion);
+    while step_control.t < duration && flow.is_continue() {
+        if step_control.tried().is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
             return Err(Stopped::Interrupted);
         }
-        let t = pace.t;
-        let (length, limit) = pace.next(duration, watched.bends);
+        let t = step_control.t;
+        let (length, limit) = step_control.next(duration, watched.bends);
         let (step, accelerations) = I::dense_step(mechanism, t, length, &motion, &at_start);
         // A step that leaves the finite range is the worst of all: stages deep in a contact that the derivatives at the step's start do
         // not know overflow.
         let probe = mechanism.finiteness_probe(&step.motion.pose) + step.motion.velocity.sum() * 0.0;
-        if !pace.is_good(error(&step, length) + probe, length, I::ORDER)? {
+        if !step_control.accepts_error(error(&step, length) + probe, length, I::ORDER)? {
             continue;
         }
         (watched.gaps)(&step.motion, &mut after);
-        if pace.is_shortened(closing::between(&before, &after, length, watched.depth), length) {
+        if step_control.shortens(closing::between(&before, &after, length, watched.depth), length) {
             continue;
         }
         std::mem::swap(&mut before, &mut after);
-        pace.accept(length, limit, before.until_pushed(watched.depth));
+        step_control.accept(length, limit, before.until_pushed(watched.depth));
         motion = step.motion;
-        flow = accept(pace.t, &motion, Some(accelerations), &before);
-        at_start = differentiated(pace.t, &motion);
+        flow = accept(step_control.t, &motion, Some(accelerations), &before);
+        at_start = differentiated(step_control.t, &motion);
     }
-    Ok(pace.effort)
+    Ok(step_control.effort)
 }
 
 /// The values of [`Knot`] at ascending `times` (s) within the `knots`, of which there are at least two.

@@ -20,7 +20,7 @@ use slipfit_system::interrupt;
 
 use crate::{
     closing::Gaps,
-    element::{PlanarElement, SpatialElement, Spinning as _, Touching as _},
+    element::{AngularSpeeds as _, HasContacts as _, PlanarElement, SpatialElement},
     error_control::{Accelerations, Effort, Stopped, Watched, integrate},
     out_of_line::OutOfLine,
     scheme::{IntegratorKind, IntegratorVisitor},
@@ -129,7 +129,7 @@ impl<const D: usize> Watch<[[f64; 2]; D], D> for PlanarPlant<'_, D> {
     fn watch(&self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>, gaps: &mut Gaps) {
         let bodies = self.mechanism().bodies();
         let placed = bodies.placed(pose, velocity);
-        gaps.clear(bodies.fastest(&placed));
+        gaps.clear(bodies.max_angular_speed(&placed));
         let mut add = |contact| gaps.add(contact);
         self.mechanism().elements().iter().for_each(|one| one.approach((bodies, &placed), &mut add));
     }
@@ -146,7 +146,7 @@ impl<const D: usize> Watch<[[f64; 2]; D], D> for JointedPlant<'_, D> {
         let bodies = self.mechanism().bodies();
         let placed = bodies.placed(pose, velocity);
         let (free, placed) = bodies.free(&placed);
-        gaps.clear(free.fastest(placed));
+        gaps.clear(free.max_angular_speed(placed));
         let mut add = |contact| gaps.add(contact);
         self.mechanism().elements().0.iter().for_each(|one| one.approach((free, placed), &mut add));
     }

@@ -1,4 +1,4 @@
-//! Numbers that the desk computes with: one, or one for each of several units.
+//! Scalars of the desk solver: one number, or one for each of several units.
 
 use pulp::Simd;
 use slipfit_core::Scalar;
@@ -17,7 +17,7 @@ pub trait Real: Scalar + PartialOrd {
     fn set(&mut self, lane: usize, x: f64);
 
     /// What `of` makes of each of these numbers and the other's.
-    fn by_each(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self;
+    fn zip_map(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self;
 }
 
 impl Real for f64 {
@@ -31,7 +31,7 @@ impl Real for f64 {
         *self = x;
     }
 
-    fn by_each(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
+    fn zip_map(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
         of(self, other)
     }
 }
@@ -50,7 +50,7 @@ impl<V: Simd> Real for Pack<V, f64> {
     }
 
     #[inline(always)]
-    fn by_each(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
+    fn zip_map(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
         let mut result = self;
         for (x, y) in result.numbers_mut().iter_mut().zip(other.numbers()) {
             *x = of(*x, *y);

@@ -18,7 +18,7 @@ use slipfit_core::{
 use crate::{
     closing::{Approach, Gaps},
     contact::Laws,
-    element::{SpatialContact, SpatialElement, Spinning as _, Touching as _, contact},
+    element::{AngularSpeeds as _, HasContacts as _, SpatialContact, SpatialElement, contact},
     out_of_line::Contacts,
     pack::Pack,
 };
@@ -83,7 +83,7 @@ impl Kind {
     }
 
     /// `four` contacts of this kind as one. A `stick_band` (m/s) stands for true stick.
-    fn together<V: Simd>(&self, four: &[SpatialContact; LANES], stick_band: f64) -> Option<SpatialContact<Quad<V>>> {
+    fn on_lanes<V: Simd>(&self, four: &[SpatialContact; LANES], stick_band: f64) -> Option<SpatialContact<Quad<V>>> {
         let contact = contact::<Quad<V>>(&self.laws, stick_band).ok()?;
         let [body, from] = self.bodies;
         Some(match self.shape {
@@ -163,7 +163,7 @@ impl<const N: usize, const D: usize> SideBySide<N, D> {
     pub fn watch(&self, system: &Free<N, D>, pose: &[Pose<f64>; N], velocity: &SVector<f64, D>, gaps: &mut Gaps) {
         let bodies = system.bodies();
         let placed = bodies.placed(pose, velocity);
-        gaps.clear(bodies.fastest(&placed));
+        gaps.clear(bodies.max_angular_speed(&placed));
         let rest = match self {
             #[cfg(target_arch = "x86_64")]
             Self::Wide(quads) => {
@@ -234,7 +234,7 @@ impl<V: Simd, const N: usize, const D: usize> Quads<V, N, D> {
     /// The elements of `groups` on the `bodies`.
     fn new(instructions: V, bodies: &FreeBodies<f64, N, D>, groups: Groups, stick_band: f64) -> Self {
         let mut quads = Vec::new();
-        let rest = groups.fours(|kind, four| match kind.together(four, stick_band) {
+        let rest = groups.fours(|kind, four| match kind.on_lanes(four, stick_band) {
             Some(quad) => {
                 quads.push(quad);
                 true

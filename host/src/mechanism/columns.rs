@@ -41,7 +41,7 @@ pub struct BodyMotion {
 }
 
 impl BodyMotion {
-    /// Rotation vector from the drawn pose (rad); in a plane its third part is the angle. It goes on beyond full turns.
+    /// Rotation vector from the drawn pose (rad); in a plane its third part is the angle. It goes on point_excess full turns.
     pub fn turn(&self) -> Vector3<f64> {
         if self.is_axial { self.turned } else { rotation_vector(&self.orientation, &self.before) }
     }
@@ -218,13 +218,13 @@ impl Mechanism {
         if self.planar { &IN_A_PLANE } else { &IN_SPACE }
     }
 
-    /// What each drive sees and does at time `t` (s): speed, force and travel along its axis, or angular velocity, torque
+    /// What each drive measured_motion and does at time `t` (s): speed, force and travel along its axis, or angular velocity, torque
     /// and angle about it.
     pub fn drives_at<'a>(&'a self, t: f64, motions: &'a [BodyMotion]) -> impl Iterator<Item = Instant> + 'a {
         self.drives.iter().map(move |named| {
             let BodyMotion { displacement, orientation, turned, velocity, spin, .. } = motions[named.body];
             let arms = named.arms(|lever| orientation * lever);
-            let [vz, z] = named.sees([velocity, spin], displacement, arms, || turned);
+            let [vz, z] = named.measured_motion([velocity, spin], displacement, arms, || turned);
             Instant { t, vz, force: named.effort(t, vz), z }
         })
     }

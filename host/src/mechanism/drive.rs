@@ -39,7 +39,7 @@ pub struct NamedDrive {
     pub train: Option<TrainData<f64>>,
     /// Whether it controls the speed of the centre of mass, not that of its point.
     pub at_centre: bool,
-    /// Inertia of what turns with its motor, as the body feels it (kg, kg·m²).
+    /// Inertia of what turns with its motor, as the body measured_acceleration it (kg, kg·m²).
     pub rotor: f64,
 }
 
@@ -135,9 +135,9 @@ impl NamedDrive {
         [lever, turned(lever)]
     }
 
-    /// Speed and place that it sees (m/s and m, rad/s and rad), where its body has these velocities, of its centre of mass and of its
+    /// Speed and place along its axis (m/s and m, rad/s and rad), where its body has these velocities, of its centre of mass and of its
     /// turning, and has moved by `displacement` (m) and turned by `turned` (rad).
-    pub fn sees(
+    pub fn measured_motion(
         &self,
         [velocity, spin]: [Vector3<f64>; 2],
         displacement: Vector3<f64>,
@@ -153,8 +153,8 @@ impl NamedDrive {
         }
     }
 
-    /// How fast (m/s², rad/s²) the speed that it sees changes, by the accelerations of its body likewise.
-    pub fn feels(
+    /// Acceleration (m/s², rad/s²) along its axis, for the accelerations of its body likewise.
+    pub fn measured_acceleration(
         &self,
         centre: impl FnOnce() -> Vector3<f64>,
         turning: Vector3<f64>,
@@ -169,7 +169,7 @@ impl NamedDrive {
     }
 
     /// How much faster (m/s) the point where it acts goes along its axis than the one whose speed it controls.
-    pub fn beyond(&self, spin: Vector3<f64>, turned: impl Fn(Vector3<f64>) -> Vector3<f64>) -> f64 {
+    pub fn point_excess(&self, spin: Vector3<f64>, turned: impl Fn(Vector3<f64>) -> Vector3<f64>) -> f64 {
         match self.action {
             Action::Pushes { axis } if self.at_centre => {
                 spin.cross(&turned(self.drive.point_b)).dot(&Vector3::from(axis))

@@ -1,6 +1,6 @@
-//! Many units of one production, several at a time where the machine has registers for that.
+//! Units of one production, simulated several at a time on the lanes of vector registers.
 //!
-//! A unit has the bits that it has alone.
+//! The results are equal, bit for bit, to those of units simulated one by one.
 
 use std::{ops::ControlFlow, time::Duration};
 
@@ -12,7 +12,7 @@ use slipfit_core::{
 use slipfit_desk::{
     error_control::{Effort, Stopped},
     plant::{Allowed, Reported},
-    units::{self, Together, Unit, Witness},
+    units::{self, OnLanes, Unit, UnitObserver},
 };
 
 use super::{
@@ -21,32 +21,32 @@ use super::{
     element::PlanarElement,
     record::MechanismRun,
     recorder::Recorder,
-    run::{PlanarUnit, judged},
+    run::{PlanarUnit, run_without_output},
 };
 
 /// One unit of a production.
-pub struct Made {
+pub struct ProductionUnit {
     /// The mechanism with the unit's own parameters.
     pub mechanism: Mechanism,
     /// The unit's gaps (m).
     pub gaps: Vec<f64>,
 }
 
-/// What is found of each unit.
+/// The result of each unit.
 type Found = Vec<Result<MechanismRun, RunError>>;
 
-/// How many units of `mechanism` one thread is to be given at a time: enough that lanes do not wait for long where there are no more, and
-/// few enough that all threads have some.
-pub fn at_a_time(mechanism: &Mechanism) -> usize {
-    if shares(mechanism) && units::lanes(usize::MAX).is_some() { 32 } else { 1 }
+/// Units of `mechanism` that one thread runs in a batch: many enough that few lanes are idle at its end, few enough that all threads
+/// have work.
+pub fn batch_size(mechanism: &Mechanism) -> usize {
+    if supports_lanes(mechanism) && units::lanes(usize::MAX).is_some() { 32 } else { 1 }
 }
 
-/// Runs `made` units, at most `lanes` at a time on one thread. Of none is told how it moves.
-pub fn run_many(made: &[Made], lanes: usize) -> Found {
-    let is_shared = made.first().is_some_and(|first| shares(&first.mechanism));
+/// Runs `made` units, at most `lanes` at a time on one thread. The results have no motion.
+pub fn run_units(made: &[ProductionUnit], lanes: usize) -> Found {
+    let is_shared = made.first().is_some_and(|first| supports_lanes(&first.mechanism));
     let mounts = || made.iter().map(|made| Mounts::of(&made.mechanism).ok()).collect::<Option<Vec<_>>>();
     match units::lanes(lanes).filter(|_| is_shared).zip(mounts()) {
-        None => made.iter().map(alone).collect(),
+        None => made.iter().map(run_alone).collect(),
         Some((lanes, mounts)) => match mounts.first().map_or(0, |mounts| mounts.coordinates().len()) {
             ..=3 => in_plane::<3>(made, &mounts, lanes),
             _ => in_plane::<6>(made, &mounts, lanes),
@@ -54,13 +54,13 @@ pub fn run_many(made: &[Made], lanes: usize) -> Found {
     }
 }
 
-fn alone(Made { mechanism, gaps }: &Made) -> Result<MechanismRun, RunError> {
-    judged(mechanism, gaps)
+fn run_alone(ProductionUnit { mechanism, gaps }: &ProductionUnit) -> Result<MechanismRun, RunError> {
+    run_without_output(mechanism, gaps)
 }
 
-/// Whether units of `mechanism` share their steps: those in space, with commands other than a ramp, friction other than Coulomb's, springs along
-/// lines and contoured walls run one by one.
-fn shares(mechanism: &Mechanism) -> bool {
+/// Whether units of `mechanism` can run on lanes. Mechanisms in space, with commands other than a ramp, friction other than Coulomb's,
+/// line springs or contoured walls run one by one: their laws are not compiled for lanes.
+fn supports_lanes(mechanism: &Mechanism) -> bool {
     let by_ramp = |named: &NamedDrive| named.sampling.is_none() && named.command.is_none();
     let by_coulomb =
         |joint: &Joint| matches!(joint.laws.friction, SlidingData::Coulomb(_)) && joint.walls.is_parallel();
@@ -71,18 +71,19 @@ fn shares(mechanism: &Mechanism) -> bool {
         && mechanism.springs.iter().all(by_turn)
 }
 
-fn in_plane<const D: usize>(made: &[Made], mounts: &[Mounts], lanes: usize) -> Found
+fn in_plane<const D: usize>(made: &[ProductionUnit], mounts: &[Mounts], lanes: usize) -> Found
 where
-    PlanarTree<f64, D>: Together<D, Pose = [[f64; 2]; D], Element = PlanarElement<D>>,
+    PlanarTree<f64, D>: OnLanes<D, Pose = [[f64; 2]; D], Element = PlanarElement<D>>,
 {
-    let unit = |(made, mounts): (&Made, &Mounts)| PlanarUnit::<D>::new(&made.mechanism, mounts, &made.gaps).ok();
+    let unit =
+        |(made, mounts): (&ProductionUnit, &Mounts)| PlanarUnit::<D>::new(&made.mechanism, mounts, &made.gaps).ok();
     let mut ready: Vec<_> = made.iter().zip(mounts).map(unit).collect();
-    // Those that are not like the first run alone.
+    // Units with another structure than the first run alone.
     let first = ready.iter().flatten().next().map(|first| (first.tree, first.elements.clone()));
     for ready in &mut ready {
         let is_like = |unit: &PlanarUnit<D>| {
             let first = first.as_ref().map(|(tree, elements)| (tree, &elements[..]));
-            first.is_some_and(|first| units::are_alike(first, (&unit.tree, &unit.elements)))
+            first.is_some_and(|first| units::same_structure(first, (&unit.tree, &unit.elements)))
         };
         *ready = ready.take().filter(is_like);
     }
@@ -93,42 +94,42 @@ where
     let errors: Vec<_> = ready.iter().map(|unit| unit.as_ref().map(error)).collect();
     let bends: Vec<_> = made.iter().map(|made| bends(&made.mechanism)).collect();
     let all = made.iter().zip(mounts).zip(&ready);
-    let judges = all.map(|((Made { mechanism, .. }, mounts), unit)| {
+    let runs = all.map(|((ProductionUnit { mechanism, .. }, mounts), unit)| {
         let unit = unit.as_ref()?;
-        let told = Box::new(unit.told(mechanism, mounts));
-        Some(Judge::Watches(Some(Recorder::new(mechanism, told, &unit.start, &unit.limits, false))))
+        let kinematics = Box::new(unit.kinematics(mechanism, mounts));
+        Some(UnitRun::Running(Some(Recorder::new(mechanism, kinematics, &unit.start, &unit.limits, false))))
     });
-    let mut judges: Vec<_> = judges.collect();
+    let mut runs: Vec<_> = runs.collect();
     let mut units = Vec::new();
-    for (k, judge) in judges.iter_mut().enumerate() {
-        if let (Some(unit), Some(error), Some(witness)) = (&ready[k], &errors[k], judge) {
+    for (k, run) in runs.iter_mut().enumerate() {
+        if let (Some(unit), Some(error), Some(observer)) = (&ready[k], &errors[k], run) {
             units.push(Unit {
                 bodies: unit.tree,
                 elements: unit.elements.clone(),
                 start: unit.start,
                 duration: made[k].mechanism.run.duration,
                 allowed: Allowed { error, depth: unit.limits.place(), bends: &bends[k] },
-                witness,
+                observer,
             });
         }
     }
-    PlanarTree::move_together(lanes, &mut units);
+    PlanarTree::integrate_on_lanes(lanes, &mut units);
     drop(units);
-    let found = made.iter().zip(judges).map(|(made, judge)| match judge {
-        Some(Judge::Has(run)) => Ok(run?),
-        _ => alone(made),
+    let found = made.iter().zip(runs).map(|(made, run)| match run {
+        Some(UnitRun::Finished(found)) => Ok(found?),
+        _ => run_alone(made),
     });
     found.collect()
 }
 
-/// What makes a run of a motion as soon as it has ended, so that no more of it is kept than of a few units.
-enum Judge<'a, P, const D: usize> {
-    Watches(Option<Recorder<'a, P, D>>),
-    Has(Result<MechanismRun, Stopped>),
+/// A unit in motion, then its result: made as soon as the motion ends, so that only the units on lanes occupy memory.
+enum UnitRun<'a, P, const D: usize> {
+    Running(Option<Recorder<'a, P, D>>),
+    Finished(Result<MechanismRun, Stopped>),
 }
 
-impl<P: Copy, const D: usize> Witness<P, D> for Judge<'_, P, D> {
-    fn see(
+impl<P: Copy, const D: usize> UnitObserver<P, D> for UnitRun<'_, P, D> {
+    fn observe(
         &mut self,
         t: f64,
         motion: &Motion<f64, P, (), D>,
@@ -136,23 +137,23 @@ impl<P: Copy, const D: usize> Witness<P, D> for Judge<'_, P, D> {
         least_gap: f64,
     ) -> ControlFlow<()> {
         match self {
-            Self::Watches(Some(recorder)) => recorder.keep(t, motion, accelerations, Some(least_gap)),
+            Self::Running(Some(recorder)) => recorder.keep(t, motion, accelerations, Some(least_gap)),
             _ => ControlFlow::Break(()),
         }
     }
 
-    fn hear(&mut self, steps: Result<Effort, Stopped>) {
-        if let Self::Watches(recorder) = self
+    fn finish(&mut self, steps: Result<Effort, Stopped>) {
+        if let Self::Running(recorder) = self
             && let Some(recorder) = recorder.take()
         {
-            *self = Self::Has(recorder.finished(steps, Duration::ZERO, None));
+            *self = Self::Finished(recorder.finished(steps, Duration::ZERO, None));
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Found, Made, alone, run_many};
+    use super::{Found, ProductionUnit, run_alone, run_units};
     use crate::{
         mechanism::{MechanismRun, Parameter, SlidingData},
         scene::{Override, SceneFile, shipped},
@@ -160,7 +161,7 @@ mod tests {
     };
 
     /// `count` units of a shipped mechanism with these settings, each with gaps, friction and masses of its own.
-    fn units(name: &str, set: &[&str], count: usize) -> Vec<Made> {
+    fn units(name: &str, set: &[&str], count: usize) -> Vec<ProductionUnit> {
         let set: Vec<_> = set.iter().map(|set| Override::set(set)).collect();
         let mechanism = SceneFile::parse(name, shipped(name).unwrap(), &set).unwrap().mechanism.unwrap();
         let mut seed = 5u32;
@@ -173,7 +174,7 @@ mod tests {
             let mut own = mechanism.clone();
             Parameter::Friction.vary(&mut own, 0.01 * next());
             Parameter::Mass(0).vary(&mut own, 0.05 * mechanism.bodies[0].mass * next());
-            Made { gaps: own.gaps_at(&levels).unwrap(), mechanism: own }
+            ProductionUnit { gaps: own.gaps_at(&levels).unwrap(), mechanism: own }
         };
         (0..count).map(unit).collect()
     }
@@ -192,10 +193,10 @@ mod tests {
         let mut made = units(name, set, 19);
         // One that is not like the others.
         made[7].mechanism.joints.iter_mut().for_each(|joint| joint.laws.friction = SlidingData::NONE);
-        let expected = told(made.iter().map(alone).collect());
+        let expected = told(made.iter().map(run_alone).collect());
         for lanes in [1, 4, 8] {
-            assert_eq!(told(run_many(&made, lanes)), expected, "{name}");
-            assert_eq!(told(run_many(&made[3..6], lanes)), expected[3..6], "{name}");
+            assert_eq!(told(run_units(&made, lanes)), expected, "{name}");
+            assert_eq!(told(run_units(&made[3..6], lanes)), expected[3..6], "{name}");
         }
         assert_ne!(expected[0], expected[1]);
     }

@@ -1,4 +1,4 @@
-//! What is kept of a run step by step, and what is told of it at its end.
+//! Records a run step by step and makes its result at its end.
 
 use std::{ops::ControlFlow, time::Duration};
 
@@ -8,12 +8,12 @@ use slipfit_core::{SVector, integrator::Motion, system::spatial::PlacedBody};
 use super::{
     Mechanism, NamedDrive,
     energy::{Energies, Work},
+    kinematics::Kinematics,
     limits::Limits,
     record::{MechanismRun, Moment, Samples},
     sampler::Sampler,
     state::State,
     sunk::{self, Depths},
-    told::Told,
 };
 use crate::{
     dynamics::{
@@ -28,48 +28,52 @@ use crate::{
     setup::RunSpec,
 };
 
-/// What a drive sees.
+/// Motion of a drive along or about its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Seen {
+struct DriveMotion {
     /// Speed (m/s, rad/s).
-    vz: f64,
+    speed: f64,
     /// Travel (m, rad) since the start, which need not be the drawn pose.
-    z: f64,
+    travel: f64,
     /// How much faster (m/s) the point goes where it acts.
-    beyond: f64,
+    point_excess: f64,
 }
 
-impl Values for Seen {
+impl Values for DriveMotion {
     /// The acceleration (m/s², rad/s²).
     type Rates = f64;
 
     fn slope(&self, acceleration: &f64) -> Self {
-        self.known_slope(Self { vz: *acceleration, z: 0.0, beyond: 0.0 })
+        self.known_slope(Self { speed: *acceleration, travel: 0.0, point_excess: 0.0 })
     }
 
     fn known_slope(&self, guess: Self) -> Self {
-        Self { z: self.vz, ..guess }
+        Self { travel: self.speed, ..guess }
     }
 
     #[inline]
     fn combined<const N: usize>(of: [&Self; N], by: impl Fn([f64; N]) -> f64) -> Self {
-        Self { vz: by(of.map(|seen| seen.vz)), z: by(of.map(|seen| seen.z)), beyond: by(of.map(|seen| seen.beyond)) }
+        Self {
+            speed: by(of.map(|drive_motion| drive_motion.speed)),
+            travel: by(of.map(|drive_motion| drive_motion.travel)),
+            point_excess: by(of.map(|drive_motion| drive_motion.point_excess)),
+        }
     }
 }
 
-/// What is told of how a mechanism moves.
+/// What a run returns of the motion.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Telling {
+pub(super) struct Output {
     /// Time (s) between two samples.
     pub every: f64,
     /// Moments that show the motion, about.
     pub moments: usize,
 }
 
-/// A run of a mechanism with poses `P`, as far as it has come.
+/// A run in progress of a mechanism with poses `P`.
 pub(super) struct Recorder<'a, P, const D: usize> {
     mechanism: &'a Mechanism,
-    bodies: Box<dyn Told<P, D> + 'a>,
+    bodies: Box<dyn Kinematics<P, D> + 'a>,
     energies: Energies,
     depths: Depths,
     /// Places (m, rad) of the drives at the start.
@@ -79,9 +83,9 @@ pub(super) struct Recorder<'a, P, const D: usize> {
     /// Ends of steps (s), and the energies (J) of motion and height there.
     times: Vec<f64>,
     energy: Vec<[f64; 2]>,
-    /// What each drive sees there.
-    drives: Vec<Vec<Knot<Seen>>>,
-    /// All that moves there, if it is to be told.
+    /// Motion of each drive there.
+    drives: Vec<Vec<Knot<DriveMotion>>>,
+    /// State of all coordinates there, if the run has an output.
     knots: Option<Vec<Knot<State<D>>>>,
     /// Error of speed (m/s) that a step is allowed.
     tolerance: f64,
@@ -91,21 +95,21 @@ pub(super) struct Recorder<'a, P, const D: usize> {
 const ABSURD: f64 = 1e5;
 
 impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
-    /// Of a run of `mechanism`, whose `bodies` start at a pose and at rates; of one that is told of, not judged alone, everything that
-    /// moves is kept.
+    /// Of a run of `mechanism`, whose `bodies` start at a pose and at rates; the states of all
+    /// coordinates are kept if `keeps_states`.
     pub fn new(
         mechanism: &'a Mechanism,
-        mut bodies: Box<dyn Told<P, D> + 'a>,
+        mut bodies: Box<dyn Kinematics<P, D> + 'a>,
         (pose, rates): &(P, SVector<f64, D>),
         limits: &Limits,
-        is_told: bool,
+        keeps_states: bool,
     ) -> Self {
         // The stroke is the first drive's.
         let of_drive = |k: usize| if k == 0 { mechanism.run } else { RunSpec { stroke: None, ..mechanism.run } };
         let mut at_start = Vec::new();
         let state = bodies.state(pose, (*rates).into());
-        bodies.tell(&state, &mut at_start);
-        bodies.look(pose, rates);
+        bodies.body_motions(&state, &mut at_start);
+        bodies.update(pose, rates);
         let pressed = bodies.gaps(pose, rates);
         let energy = mechanism.energy(bodies.bodies());
         let named = mechanism.drives.iter().enumerate();
@@ -113,13 +117,13 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
             mechanism,
             energies: Energies::new(mechanism, &at_start, energy, pressed.iter().copied()),
             depths: Depths::new(pressed),
-            origins: mechanism.drives.iter().map(|named| seen(named, &mut *bodies, 0.0).z).collect(),
+            origins: mechanism.drives.iter().map(|named| drive_motion(named, &mut *bodies, 0.0).travel).collect(),
             observers: named.map(|(k, named)| Observer::new(named.setpoint(), of_drive(k))).collect(),
             samplers: mechanism.drives.iter().map(Sampler::of).collect(),
             times: Vec::new(),
             energy: Vec::new(),
             drives: vec![Vec::new(); mechanism.drives.len()],
-            knots: is_told.then(Vec::new),
+            knots: keeps_states.then(Vec::new),
             tolerance: limits.speed,
             bodies,
         }
@@ -140,17 +144,17 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
         }
         // Where the step began they were looked at last.
         for (named, knots) in mechanism.drives.iter().zip(&mut *drives) {
-            let rates = accelerations.map(|[start, _]| [felt(named, &**bodies, &start), 0.0]);
-            knots.push(Knot { t, values: Seen { vz: 0.0, z: 0.0, beyond: 0.0 }, rates });
+            let rates = accelerations.map(|[start, _]| [drive_acceleration(named, &**bodies, &start), 0.0]);
+            knots.push(Knot { t, values: DriveMotion { speed: 0.0, travel: 0.0, point_excess: 0.0 }, rates });
         }
-        bodies.look(&motion.pose, &motion.velocity);
+        bodies.update(&motion.pose, &motion.velocity);
         self.times.push(t);
         self.energy.push(mechanism.energy(bodies.bodies()));
         for ((named, knots), origin) in mechanism.drives.iter().zip(&mut *drives).zip(origins) {
             let Some(knot) = knots.last_mut() else { continue };
-            knot.values = seen(named, &mut **bodies, *origin);
+            knot.values = drive_motion(named, &mut **bodies, *origin);
             if let (Some([_, end]), Some([_, at_end])) = (accelerations, &mut knot.rates) {
-                *at_end = felt(named, &**bodies, &end);
+                *at_end = drive_acceleration(named, &**bodies, &end);
             }
         }
         if let Some(knots) = &mut self.knots {
@@ -158,10 +162,11 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
             knots.push(Knot { t, values, rates: accelerations.map(|rates| rates.map(<[f64; D]>::from)) });
         }
         for ((sampler, knots), named) in self.samplers.iter_mut().zip(&*drives).zip(&mechanism.drives) {
-            if let (Some(sampler), Some(Knot { values: Seen { vz, z, .. }, .. })) = (sampler, knots.last())
+            if let (Some(sampler), Some(Knot { values: DriveMotion { speed, travel, .. }, .. })) =
+                (sampler, knots.last())
                 && sampler.is_due(t)
             {
-                sampler.sample(Instant { t, vz: *vz, force: named.effort(t, *vz), z: *z });
+                sampler.sample(Instant { t, vz: *speed, force: named.effort(t, *speed), z: *travel });
             }
         }
         let is_absurd = motion.velocity.iter().any(|rate| rate.abs() > ABSURD) && self.has_run_away();
@@ -171,16 +176,16 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
     /// Whether the first drive has come to the end of its stroke.
     fn has_ended(&self) -> bool {
         let last = self.observers.first().zip(self.drives.first().and_then(|knots| knots.last()));
-        last.is_some_and(|(first, knot)| first.is_at_end(knot.values.z))
+        last.is_some_and(|(first, knot)| first.is_at_end(knot.values.travel))
     }
 
     /// Whether a drive has run away: it does so until no number is large enough, so that the run ends there.
     fn has_run_away(&self) -> bool {
         let mut drives = self.mechanism.drives.iter().zip(&self.drives);
-        drives.any(|(named, knots)| knots.last().is_some_and(|knot| has_run_away(knot.values.vz, named.drive.speed)))
+        drives.any(|(named, knots)| knots.last().is_some_and(|knot| has_run_away(knot.values.speed, named.drive.speed)))
     }
 
-    /// What is known of the run, whose integration took this time and these `steps`, or was stopped; how it moves, if it is to be `told`.
+    /// The result of the run, whose integration took this time and these `steps`, or was stopped, with the motion as `output` asks for it.
     ///
     /// # Errors
     /// Why it was stopped, unless a drive had run away.
@@ -188,7 +193,7 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
         mut self,
         steps: Result<error_control::Effort, Stopped>,
         integration: Duration,
-        told: Option<Telling>,
+        output: Option<Output>,
     ) -> Result<MechanismRun, Stopped> {
         let steps = steps.or_else(|stopped| {
             if stopped != Stopped::Interrupted && self.has_run_away() {
@@ -198,7 +203,7 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
             }
         })?;
         let end = match (self.observers.first(), self.drives.first()) {
-            (Some(first), Some(knots)) => end(knots, |seen| first.is_at_end(seen.z)),
+            (Some(first), Some(knots)) => end(knots, |drive_motion| first.is_at_end(drive_motion.travel)),
             _ => self.times[self.times.len() - 1],
         };
         let mut work_at_knots = vec![0.0; self.times.len()];
@@ -210,9 +215,9 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
             // An offset of the drive train works like a force.
             let offset = named.train.map_or(0.0, |train| train.offset);
             let (mut observer, mut work) = (observer.until(end), Work::default());
-            looks(knots, end, |t, Seen { vz, z, beyond }, place| {
-                let by_speed = named.effort(t, vz);
-                let power = |force: f64| (force - offset) * (vz + beyond);
+            looks(knots, end, |t, DriveMotion { speed, travel, point_excess }, place| {
+                let by_speed = named.effort(t, speed);
+                let power = |force: f64| (force - offset) * (speed + point_excess);
                 let force = match place {
                     Place::At(_) => {
                         // The work up to here is that of what was held.
@@ -227,7 +232,7 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
                 if let Place::At(knot) = place {
                     work_at_knots[knot] += work.done;
                 }
-                observer.observe(Instant { t, vz, force, z });
+                observer.observe(Instant { t, vz: speed, force, z: travel });
             });
             let outcome = observer.outcome();
             // Also before its ramp is over.
@@ -249,38 +254,38 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
             effort: steps,
             integration,
         };
-        if let (Some(told), Some(knots)) = (told, &self.knots) {
-            self.tell(knots, end, &efforts, told, &mut run);
+        if let (Some(output), Some(knots)) = (output, &self.knots) {
+            self.write_output(knots, end, &efforts, output, &mut run);
         }
         Ok(run)
     }
 
-    /// What a drive gives that sees this at the ends of steps.
-    fn effort(&self, named: &NamedDrive, knots: &[Knot<Seen>], sampler: Option<Sampler>) -> Effort {
+    /// Force or torque of a drive over the run, by its motion at the ends of steps.
+    fn effort(&self, named: &NamedDrive, knots: &[Knot<DriveMotion>], sampler: Option<Sampler>) -> Effort {
         if let Some(sampler) = sampler {
             return Effort::held(&sampler.into_samples());
         }
-        let values = knots.iter().map(|knot| named.effort(knot.t, knot.values.vz)).collect();
+        let values = knots.iter().map(|knot| named.effort(knot.t, knot.values.speed)).collect();
         // What other joints hold still has a speed that is known exactly at all times.
-        let moves = knots.iter().any(|knot| knot.values.vz != 0.0);
+        let moves = knots.iter().any(|knot| knot.values.speed != 0.0);
         let time_constant = if moves { self.mechanism.least_inertia(named) / named.drive.gain } else { f64::INFINITY };
         Effort::new(self.times.clone(), values, time_constant)
     }
 
     /// Tells how everything moves up to the `end` (s), by the states at the ends of steps and what the drives give.
-    fn tell(
+    fn write_output(
         &self,
         knots: &[Knot<State<D>>],
         end: f64,
         efforts: &[Effort],
-        Telling { every, moments }: Telling,
+        Output { every, moments }: Output,
         run: &mut MechanismRun,
     ) {
         let Self { mechanism, bodies, .. } = self;
         let mut motions = Vec::new();
         let times = samples(end, every);
         for (t, state) in times.clone().zip(sampled(knots, times)) {
-            bodies.tell(&state, &mut motions);
+            bodies.body_motions(&state, &mut motions);
             let mut drives: Vec<_> = mechanism.drives_at(t, &motions).collect();
             for ((at, origin), effort) in drives.iter_mut().zip(&self.origins).zip(efforts) {
                 (at.z, at.force) = (at.z - origin, effort.at(t, at.force));
@@ -296,7 +301,7 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
             let moment = |k: usize| {
                 let Knot { t, ref values, .. } = knots[k];
                 let mut motions = Vec::with_capacity(mechanism.bodies.len());
-                bodies.tell(values, &mut motions);
+                bodies.body_motions(values, &mut motions);
                 let by_speed = mechanism.drives_at(t, &motions).map(|at| at.force);
                 let efforts = by_speed.zip(efforts).map(|(force, effort)| effort.at_knot(t, force)).collect();
                 Moment { t, motions, efforts }
@@ -306,23 +311,27 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
     }
 }
 
-/// What a drive sees of `bodies` where they were looked at last, its place from `origin` (m, rad) on.
-fn seen<P, const D: usize>(named: &NamedDrive, bodies: &mut (dyn Told<P, D> + '_), origin: f64) -> Seen {
+/// Motion of a drive at the last pose of `bodies`; travel counts from `origin` (m, rad).
+fn drive_motion<P, const D: usize>(
+    named: &NamedDrive,
+    bodies: &mut (dyn Kinematics<P, D> + '_),
+    origin: f64,
+) -> DriveMotion {
     let PlacedBody { to_frame, displacement_w, velocity_w, rotation_w, .. } = bodies.bodies()[named.body];
     let turn = |lever: Vector3<f64>| to_frame * lever;
-    let turned = || bodies.turned(named.body);
-    let [vz, z] = named.sees([velocity_w, rotation_w], displacement_w, named.arms(turn), turned);
-    Seen { vz, z: z - origin, beyond: named.beyond(rotation_w, turn) }
+    let rotation = || bodies.rotation(named.body);
+    let [speed, travel] = named.measured_motion([velocity_w, rotation_w], displacement_w, named.arms(turn), rotation);
+    DriveMotion { speed, travel: travel - origin, point_excess: named.point_excess(rotation_w, turn) }
 }
 
-/// How fast (m/s², rad/s²) the speed that a drive sees changes there, where coordinates have these accelerations.
-fn felt<P, const D: usize>(
+/// Acceleration (m/s², rad/s²) of a drive at the last pose of `bodies`, for these accelerations of the coordinates.
+fn drive_acceleration<P, const D: usize>(
     named: &NamedDrive,
-    bodies: &(dyn Told<P, D> + '_),
+    bodies: &(dyn Kinematics<P, D> + '_),
     of_coordinates: &SVector<f64, D>,
 ) -> f64 {
     let PlacedBody { to_frame, rotation_w, .. } = bodies.bodies()[named.body];
     let [_, arm] = named.arms(|lever| to_frame * lever);
     let centre = || bodies.acceleration(named.body, of_coordinates);
-    named.feels(centre, bodies.turning(named.body, of_coordinates), rotation_w, arm)
+    named.measured_acceleration(centre, bodies.angular_acceleration(named.body, of_coordinates), rotation_w, arm)
 }

@@ -19,14 +19,14 @@ use super::{
     columns::JointedBodies,
     element::PlanarElement,
     joint_elements::joints_of_elements,
+    kinematics::{FreeKinematics, JointedKinematics, Kinematics, PlanarKinematics},
     limits::Limits,
     planar,
     record::MechanismRun,
-    recorder::{Recorder, Telling},
+    recorder::{Output, Recorder},
     spatial,
     start::thrown,
     state::half_angle,
-    told::{InPlane, InSpace, OnJoints, Told},
 };
 use crate::setup::ControllerSpec;
 
@@ -35,7 +35,7 @@ use crate::setup::ControllerSpec;
 /// # Errors
 /// See [`RunError`].
 pub fn run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
-    run_by(mechanism, gaps, By { controller: None, told: Some(Telling { every, moments: 0 }) })
+    run_by(mechanism, gaps, By { controller: None, output: Some(Output { every, moments: 0 }) })
 }
 
 /// The same with about `count` moments of the motion, half of them evenly spread over the steps, which are short where much
@@ -47,7 +47,7 @@ pub fn film(mechanism: &Mechanism, gaps: &[f64], count: usize) -> Result<Mechani
     run_by(
         mechanism,
         gaps,
-        By { controller: None, told: Some(Telling { every: mechanism.run.duration, moments: count }) },
+        By { controller: None, output: Some(Output { every: mechanism.run.duration, moments: count }) },
     )
 }
 
@@ -57,15 +57,15 @@ pub fn film(mechanism: &Mechanism, gaps: &[f64], count: usize) -> Result<Mechani
 /// # Errors
 /// See [`RunError`].
 pub fn controller_run(mechanism: &Mechanism, gaps: &[f64], every: f64) -> Result<MechanismRun, RunError> {
-    run_by(mechanism, gaps, By { controller: Some(mechanism.controller), told: Some(Telling { every, moments: 0 }) })
+    run_by(mechanism, gaps, By { controller: Some(mechanism.controller), output: Some(Output { every, moments: 0 }) })
 }
 
-/// What the run of the unit of `mechanism` with the given `gaps` (m) is judged by: nothing is told of how it moves.
+/// The result of the unit of `mechanism` with the given `gaps` (m), without its motion.
 ///
 /// # Errors
 /// See [`RunError`].
-pub(super) fn judged(mechanism: &Mechanism, gaps: &[f64]) -> Result<MechanismRun, RunError> {
-    run_by(mechanism, gaps, By { controller: None, told: None })
+pub(super) fn run_without_output(mechanism: &Mechanism, gaps: &[f64]) -> Result<MechanismRun, RunError> {
+    run_by(mechanism, gaps, By { controller: None, output: None })
 }
 
 fn run_by(mechanism: &Mechanism, gaps: &[f64], by: By) -> Result<MechanismRun, RunError> {
@@ -101,7 +101,7 @@ fn run_by(mechanism: &Mechanism, gaps: &[f64], by: By) -> Result<MechanismRun, R
 struct By {
     /// A controller's steps; the desk's, if there are none.
     controller: Option<ControllerSpec>,
-    told: Option<Telling>,
+    output: Option<Output>,
 }
 
 /// One unit in a plane, ready to be moved.
@@ -125,8 +125,8 @@ impl<const D: usize> PlanarUnit<D> {
     }
 
     /// How it is told of.
-    pub fn told<'a>(&'a self, mechanism: &Mechanism, mounts: &Mounts) -> InPlane<'a, D> {
-        InPlane::new(mechanism, mounts, &self.tree, &self.elements, self.places)
+    pub fn kinematics<'a>(&'a self, mechanism: &Mechanism, mounts: &Mounts) -> PlanarKinematics<'a, D> {
+        PlanarKinematics::new(mechanism, mounts, &self.tree, &self.elements, self.places)
     }
 }
 
@@ -141,7 +141,7 @@ where
 {
     let unit = PlanarUnit::<D>::new(mechanism, mounts, gaps)?;
     let desk = OutOfLine::new(System::new(unit.tree, &unit.elements[..]));
-    solve(mechanism, desk, unit.start, (&unit.limits, Box::new(unit.told(mechanism, mounts))), by)
+    solve(mechanism, desk, unit.start, (&unit.limits, Box::new(unit.kinematics(mechanism, mounts))), by)
 }
 
 fn in_space<const N: usize, const D: usize>(
@@ -163,7 +163,7 @@ where
     let laws = joints_of_elements(mechanism).map(|joint| joint.map(|joint| joint.laws));
     let contacts = SideBySide::new(&bodies, &elements, laws, limits.stick_band());
     let desk = OutOfLine::by(System::new(bodies, &elements[..]), contacts);
-    solve(mechanism, desk, (poses, rates.into()), (&limits, Box::new(InSpace::new(&bodies, &elements))), by)
+    solve(mechanism, desk, (poses, rates.into()), (&limits, Box::new(FreeKinematics::new(&bodies, &elements))), by)
 }
 
 fn on_joints<const D: usize>(
@@ -182,7 +182,7 @@ where
     let Rest { places, rates } = Rest::on_joints(mechanism, mounts);
     let start = (tree.pose(places, half_angle), rates.into());
     let desk = OutOfLine::new(System::new(tree, ThroughJoints(&elements[..])));
-    let told = Box::new(OnJoints::new(&tree, &elements, &bodies, places));
+    let told = Box::new(JointedKinematics::new(&tree, &elements, &bodies, places));
     solve(mechanism, desk, start, (&limits, told), by)
 }
 
@@ -190,11 +190,11 @@ fn solve<P: Plant<D>, const D: usize>(
     mechanism: &Mechanism,
     desk: P,
     start: (P::Pose, SVector<f64, D>),
-    (limits, told): (&Limits, Box<dyn Told<P::Pose, D> + '_>),
+    (limits, told): (&Limits, Box<dyn Kinematics<P::Pose, D> + '_>),
     by: By,
 ) -> Result<MechanismRun, RunError> {
     let least_mass = desk.least_mass();
-    let mut recorder = Recorder::new(mechanism, told, &start, limits, by.told.is_some());
+    let mut recorder = Recorder::new(mechanism, told, &start, limits, by.output.is_some());
     let (duration, bends) = (mechanism.run.duration, bends(mechanism));
     let mut keep = |t: f64, motion: &_, accelerations, gap| recorder.keep(t, motion, accelerations, gap);
     let clock = Instant::now();
@@ -207,5 +207,5 @@ fn solve<P: Plant<D>, const D: usize>(
             desk.by_controller(start, duration, (integrator, step), &mut keep)
         }
     };
-    Ok(recorder.finished(effort, clock.elapsed(), by.told)?)
+    Ok(recorder.finished(effort, clock.elapsed(), by.output)?)
 }

@@ -13,7 +13,7 @@ use crate::{
         outcome::{Outcome, Verdict},
         simulate::SimulateError,
     },
-    mechanism::{ByDrive, ENERGY, Made, Mechanism, MechanismRun, at_a_time, confirmed, run, run_many},
+    mechanism::{ByDrive, ENERGY, Mechanism, MechanismRun, ProductionUnit, batch_size, confirmed, run, run_units},
     setup::{Adjustable, RunSpec},
 };
 
@@ -45,7 +45,7 @@ impl Subject for ByDrive<'_> {
     }
 
     fn trouble(&self, drawn: &Drawn, i: usize) -> Option<String> {
-        let Made { mechanism, gaps } = made(self, drawn, i);
+        let ProductionUnit { mechanism, gaps } = made(self, drawn, i);
         let run = run(&mechanism, &gaps, mechanism.run.duration).map_err(SimulateError::from);
         run.and_then(|run| judged(self, drawn, i, &run)).err().map(|error| error.to_string())
     }
@@ -82,7 +82,7 @@ pub fn mechanism_of(mechanism: &Mechanism, drawn: &Drawn, i: usize) -> Mechanism
 
 /// What those of the units that were `drawn` which are `asked` for do, and their final speeds as shares of the command.
 fn units(driven: &ByDrive, drawn: &Drawn, asked: &[usize]) -> Result<Vec<(UnitOutcome, f64)>, SimulateError> {
-    let pieces: Vec<&[usize]> = asked.chunks(at_a_time(driven.mechanism())).collect();
+    let pieces: Vec<&[usize]> = asked.chunks(batch_size(driven.mechanism())).collect();
     let found = parallel::try_map(&pieces, |piece| together(driven, drawn, piece))?;
     Ok(found.into_iter().flatten().collect())
 }
@@ -90,8 +90,8 @@ fn units(driven: &ByDrive, drawn: &Drawn, asked: &[usize]) -> Result<Vec<(UnitOu
 /// The same of a few.
 fn together(driven: &ByDrive, drawn: &Drawn, asked: &[usize]) -> Result<Vec<(UnitOutcome, f64)>, SimulateError> {
     let fits = |i: &usize| driven.fits(&drawn.gaps[*i]);
-    let made: Vec<Made> = asked.iter().filter(|i| fits(i)).map(|i| made(driven, drawn, *i)).collect();
-    let mut runs = run_many(&made, usize::MAX).into_iter();
+    let made: Vec<ProductionUnit> = asked.iter().filter(|i| fits(i)).map(|i| made(driven, drawn, *i)).collect();
+    let mut runs = run_units(&made, usize::MAX).into_iter();
     let mut found = Vec::with_capacity(asked.len());
     for i in asked {
         if interrupt::requested() {
@@ -109,10 +109,10 @@ fn together(driven: &ByDrive, drawn: &Drawn, asked: &[usize]) -> Result<Vec<(Uni
 }
 
 /// Unit `i` of those `drawn`, to the tolerance of populations.
-fn made(driven: &ByDrive, drawn: &Drawn, i: usize) -> Made {
+fn made(driven: &ByDrive, drawn: &Drawn, i: usize) -> ProductionUnit {
     let own = mechanism_of(driven.mechanism(), drawn, i);
     let run = RunSpec { error: own.run.error.max(ERROR), ..own.run };
-    Made { mechanism: Mechanism { run, ..own }, gaps: drawn.gaps[i].clone() }
+    ProductionUnit { mechanism: Mechanism { run, ..own }, gaps: drawn.gaps[i].clone() }
 }
 
 /// What the run of unit `i` found, run again where that is in doubt; and whether it was.

@@ -10,7 +10,7 @@ use slipfit_core::{
     },
 };
 
-use super::{Touching, act, act_apart, approach, gap};
+use super::{HasContacts, act, act_apart, approach, gap};
 use crate::{
     closing::Approach,
     drive::AnyDrive,
@@ -69,7 +69,7 @@ impl SpatialElement {
     }
 }
 
-impl<const N: usize, const D: usize> Touching<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
+impl<const N: usize, const D: usize> HasContacts<f64, FreeBodies<f64, N, D>, D> for SpatialElement {
     fn approach(&self, at: Free<f64, N, D>, see: &mut impl FnMut(Approach)) {
         match self {
             Self::Contact(contact) => contact.approach(at, see),
@@ -79,7 +79,7 @@ impl<const N: usize, const D: usize> Touching<f64, FreeBodies<f64, N, D>, D> for
     }
 }
 
-impl<S: Real, const N: usize, const D: usize> Touching<S, FreeBodies<S, N, D>, D> for SpatialContact<S> {
+impl<S: Real, const N: usize, const D: usize> HasContacts<S, FreeBodies<S, N, D>, D> for SpatialContact<S> {
     #[inline(always)]
     fn approach(&self, at: Free<S, N, D>, see: &mut impl FnMut(Approach<S>)) {
         match self {

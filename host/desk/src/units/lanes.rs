@@ -11,11 +11,11 @@ use slipfit_core::{
 use super::{Unit, Wide, WidePose};
 use crate::{
     closing::WideGaps,
-    element::{Spinning, Touching},
+    element::{AngularSpeeds, HasContacts},
     error_control::{Effort, FIRST_STEP, Stopped},
-    pace::Pace,
     plant::Reported,
     real::Real,
+    step_control::StepControl,
 };
 
 /// Fills in the contacts of the units of `system`.
@@ -26,11 +26,11 @@ fn watch<S: Real, B, E, const D: usize>(
     velocity: &SVector<S, D>,
     gaps: &mut WideGaps<S>,
 ) where
-    B: Spinning<S, D>,
-    E: Touching<S, B, D>,
+    B: AngularSpeeds<S, D>,
+    E: HasContacts<S, B, D>,
 {
     let placed = system.bodies().placed(pose, velocity);
-    gaps.spin = system.bodies().fastest(&placed);
+    gaps.spin = system.bodies().max_angular_speed(&placed);
     gaps.contacts.clear();
     let mut see = |contact| gaps.contacts.push(contact);
     for element in *system.elements() {
@@ -58,7 +58,7 @@ const MOST_LANES: usize = 8;
 /// Units on lanes, with poses `P` and what their laws remember, `R`.
 pub struct Lanes<V: Simd, P, R, const D: usize> {
     /// Which unit is on each lane, and how far it is; none where there are no more.
-    on: Vec<Option<(usize, Pace)>>,
+    on: Vec<Option<(usize, StepControl)>>,
     /// Whose numbers are on each lane, also where the unit has ended.
     pub sources: Vec<usize>,
     /// The first unit that no lane has had.
@@ -98,7 +98,7 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
         let mut fresh = Wide::<V>::splat(0.0);
         for (lane, on) in self.on.iter_mut().enumerate() {
             if let (None, Some(unit)) = (&on, units.get(self.next)) {
-                *on = Some((self.next, Pace::default()));
+                *on = Some((self.next, StepControl::default()));
                 self.sources[lane] = self.next;
                 self.next += 1;
                 let (pose, velocity) = &unit.start;
@@ -111,18 +111,18 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
     }
 
     /// Whether units are on lanes, and on all of them as long as there are more of `count`.
-    pub fn are_at_work(&self, count: usize) -> bool {
+    pub fn is_running(&self, count: usize) -> bool {
         let mut on = self.on.iter();
         if self.next < count { on.all(Option::is_some) } else { on.any(Option::is_some) }
     }
 
     /// Looks at `fresh` units where they start.
     #[inline(always)]
-    pub fn begin<B, E, W, F>(&mut self, system: &System<W, &[F]>, fresh: Wide<V>, units: &mut [Unit<B, E, D>])
+    pub fn start_units<B, E, W, F>(&mut self, system: &System<W, &[F]>, fresh: Wide<V>, units: &mut [Unit<B, E, D>])
     where
         B: Bodies<f64, D>,
-        W: Spinning<Wide<V>, D, Pose = P>,
-        F: Touching<Wide<V>, W, D, Internal = R>,
+        W: AngularSpeeds<Wide<V>, D, Pose = P>,
+        F: HasContacts<Wide<V>, W, D, Internal = R>,
         P: WidePose<B::Pose>,
     {
         let (pose, forgotten) = (self.motion.pose, R::default());
@@ -135,10 +135,10 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
         let least = self.before.least();
         for (lane, on) in self.on.iter_mut().enumerate() {
             if let (Some((unit, _)), true) = (&on, fresh.get(lane) > 0.0) {
-                let Unit { witness, duration, .. } = &mut units[*unit];
+                let Unit { observer, duration, .. } = &mut units[*unit];
                 let start = of_lane(&self.motion, lane);
-                if witness.see(0.0, &start, None, least.get(lane)).is_break() || *duration <= 0.0 {
-                    witness.hear(Ok(Effort::default()));
+                if observer.observe(0.0, &start, None, least.get(lane)).is_break() || *duration <= 0.0 {
+                    observer.finish(Ok(Effort::default()));
                     *on = None;
                 }
             }
@@ -150,10 +150,10 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
     pub fn next_step<B: Bodies<f64, D>, E>(&self, units: &[Unit<B, E, D>]) -> NextStep<V> {
         let mut next = NextStep { t: Wide::splat(0.0), length: Wide::splat(FIRST_STEP), limits: [0.0; MOST_LANES] };
         for (lane, on) in self.on.iter().enumerate() {
-            if let Some((unit, pace)) = on {
+            if let Some((unit, step_control)) = on {
                 let Unit { duration, allowed, .. } = &units[*unit];
-                let (length, limit) = pace.next(*duration, allowed.bends);
-                next.t.set(lane, pace.t);
+                let (length, limit) = step_control.next(*duration, allowed.bends);
+                next.t.set(lane, step_control.t);
                 next.length.set(lane, length);
                 next.limits[lane] = limit;
             }
@@ -163,7 +163,7 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
 
     /// 1 for units whose `step` is good enough.
     #[inline(always)]
-    pub fn judge<B, E, W, F>(
+    pub fn check_steps<B, E, W, F>(
         &mut self,
         system: &System<W, &[F]>,
         step: &Step<Wide<V>, P, R, D>,
@@ -172,21 +172,21 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
     ) -> Wide<V>
     where
         B: Bodies<f64, D>,
-        W: Spinning<Wide<V>, D, Pose = P>,
-        F: Touching<Wide<V>, W, D, Internal = R>,
+        W: AngularSpeeds<Wide<V>, D, Pose = P>,
+        F: HasContacts<Wide<V>, W, D, Internal = R>,
     {
         let mut good = Wide::splat(0.0);
         let Step { residual, error, drift, motion: end } = step;
         let probe = system.finiteness_probe(&end.pose) + end.velocity.sum() * good;
         for (lane, on) in self.on.iter_mut().enumerate() {
-            let Some((unit, pace)) = on else { continue };
+            let Some((unit, step_control)) = on else { continue };
             let reported = Reported { residual: residual.get(lane), error: error.get(lane), drift: drift.get(lane) };
             let length = next.length.get(lane);
             let error = (units[*unit].allowed.error)(reported, length) + probe.get(lane);
-            match pace.is_good(error, length, Rodas4::ORDER) {
-                Ok(is_good) => good.set(lane, if is_good { 1.0 } else { 0.0 }),
+            match step_control.accepts_error(error, length, Rodas4::ORDER) {
+                Ok(accepts_error) => good.set(lane, if accepts_error { 1.0 } else { 0.0 }),
                 Err(stopped) => {
-                    units[*unit].witness.hear(Err(stopped));
+                    units[*unit].observer.finish(Err(stopped));
                     *on = None;
                 }
             }
@@ -194,10 +194,10 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
         watch(system, &end.pose, &end.velocity, &mut self.after);
         let may_act = self.before.may_act(&self.after, next.length);
         for (lane, on) in self.on.iter_mut().enumerate() {
-            if let (Some((unit, pace)), true) = (on, good.get(lane) > 0.0 && may_act.get(lane) != 0.0) {
+            if let (Some((unit, step_control)), true) = (on, good.get(lane) > 0.0 && may_act.get(lane) != 0.0) {
                 let length = next.length.get(lane);
                 let between = self.before.between(&self.after, lane, length, units[*unit].allowed.depth);
-                if pace.is_shortened(between, length) {
+                if step_control.shortens(between, length) {
                     good.set(lane, 0.0);
                 }
             }
@@ -207,7 +207,7 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
 
     /// Takes the `good` steps, which end with the motion `end` and have these `accelerations`.
     #[inline(always)]
-    pub fn accept<B, E, W, F>(
+    pub fn accept_steps<B, E, W, F>(
         &mut self,
         system: &System<W, &[F]>,
         (end, accelerations): Ended<V, P, R, D>,
@@ -215,8 +215,8 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
         units: &mut [Unit<B, E, D>],
     ) where
         B: Bodies<f64, D>,
-        W: Spinning<Wide<V>, D, Pose = P>,
-        F: Touching<Wide<V>, W, D, Internal = R>,
+        W: AngularSpeeds<Wide<V>, D, Pose = P>,
+        F: HasContacts<Wide<V>, W, D, Internal = R>,
         P: WidePose<B::Pose>,
     {
         let Self { motion, before, after, on, .. } = self;
@@ -227,14 +227,14 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
         before.accept(good, after);
         let (least, slack) = (before.least(), before.slack());
         for (lane, on) in on.iter_mut().enumerate() {
-            let (Some((unit, pace)), true) = (&mut *on, good.get(lane) > 0.0) else { continue };
-            let Unit { duration, allowed, witness, .. } = &mut units[*unit];
+            let (Some((unit, step_control)), true) = (&mut *on, good.get(lane) > 0.0) else { continue };
+            let Unit { duration, allowed, observer, .. } = &mut units[*unit];
             let pushed = if slack.get(lane) > 0.0 { before.until_pushed(lane, allowed.depth) } else { f64::INFINITY };
-            pace.accept(next.length.get(lane), next.limits[lane], pushed);
+            step_control.accept(next.length.get(lane), next.limits[lane], pushed);
             let rates = accelerations.each_ref().map(|rates| rates.map(|rate| rate.get(lane)));
-            let flow = witness.see(pace.t, &of_lane(motion, lane), Some(rates), least.get(lane));
-            if flow.is_break() || pace.t >= *duration {
-                witness.hear(Ok(pace.effort));
+            let flow = observer.observe(step_control.t, &of_lane(motion, lane), Some(rates), least.get(lane));
+            if flow.is_break() || step_control.t >= *duration {
+                observer.finish(Ok(step_control.effort));
                 *on = None;
             }
         }
@@ -243,6 +243,6 @@ impl<V: Simd, P: Copy, R: Copy + Default, const D: usize> Lanes<V, P, R, D> {
     /// Tells units that have not come to their ends that somebody asked to stop.
     pub fn interrupt<B: Bodies<f64, D>, E>(&self, units: &mut [Unit<B, E, D>]) {
         let begun = self.on.iter().flatten().map(|(unit, _)| *unit);
-        begun.chain(self.next..units.len()).for_each(|unit| units[unit].witness.hear(Err(Stopped::Interrupted)));
+        begun.chain(self.next..units.len()).for_each(|unit| units[unit].observer.finish(Err(Stopped::Interrupted)));
     }
 }

@@ -1,7 +1,7 @@
-//! Many units of a mechanism at a time, each on a lane of the machine's registers, by error-controlled steps.
+//! Error-controlled integration of several units of a mechanism at a time, each on a lane of vector registers.
 //!
-//! Units have the same bodies, joints and laws, and other numbers. Every lane has a time and a step of its own, and takes the next
-//! unit as soon as its own has come to its end. A unit has the bits that it has alone, by
+//! The units have the same bodies, joints and laws, with different parameters. Each lane has its own time and step length, and loads the
+//! next unit as soon as its unit ends. The results are equal, bit for bit, to those of
 //! [`integrate`](crate::error_control::integrate).
 
 mod lanes;
@@ -20,14 +20,14 @@ use slipfit_system::interrupt;
 use lanes::Lanes;
 
 use crate::{
-    element::{PlanarElement, Spinning, Touching},
+    element::{AngularSpeeds, HasContacts, PlanarElement},
     error_control::{Accelerations, Effort, STEPS_PER_LOOK, Stopped},
     pack::Pack,
     plant::Allowed,
     real::Real,
 };
 
-/// A unit to be moved: its bodies and what acts on them, where and how fast it starts, and who sees it move.
+/// A unit to simulate: its bodies and what acts on them, its start, and who observes it.
 pub struct Unit<'a, B: Bodies<f64, D>, E, const D: usize> {
     /// The bodies.
     pub bodies: B,
@@ -39,14 +39,14 @@ pub struct Unit<'a, B: Bodies<f64, D>, E, const D: usize> {
     pub duration: f64,
     /// What a step may err by.
     pub allowed: Allowed<'a>,
-    /// Who sees it move.
-    pub witness: &'a mut dyn Witness<B::Pose, D>,
+    /// Observes its motion.
+    pub observer: &'a mut dyn UnitObserver<B::Pose, D>,
 }
 
-/// Who sees a unit move.
-pub trait Witness<P, const D: usize> {
-    /// Sees the start and the end of every step, as [`See`](crate::plant::See) does.
-    fn see(
+/// Observes the motion of a unit.
+pub trait UnitObserver<P, const D: usize> {
+    /// Called at the start and at the end of every step, like [`See`](crate::plant::See).
+    fn observe(
         &mut self,
         t: f64,
         motion: &Motion<f64, P, (), D>,
@@ -54,19 +54,19 @@ pub trait Witness<P, const D: usize> {
         least_gap: f64,
     ) -> ControlFlow<()>;
 
-    /// Hears what the whole motion took, or why it was stopped.
-    fn hear(&mut self, effort: Result<Effort, Stopped>);
+    /// Called at the end with the steps of the whole motion, or why it was stopped.
+    fn finish(&mut self, effort: Result<Effort, Stopped>);
 }
 
-/// Where bodies are, of as many units as there are lanes.
+/// Poses of as many units as there are lanes.
 pub trait WidePose<P> {
     /// All units at the same `pose`.
     fn everywhere(pose: &P) -> Self;
 
-    /// Where those of the unit on a `lane` are.
+    /// The pose of the unit on a `lane`.
     fn of_unit(&self, lane: usize) -> P;
 
-    /// Puts those of the unit on a `lane` there.
+    /// Sets the pose of the unit on a `lane`.
     fn put(&mut self, lane: usize, pose: &P);
 }
 
@@ -97,7 +97,7 @@ type WideOf<V, T> = <T as Cast>::Of<Wide<V>>;
 type WideSystem<'w, V, B, E> = System<WideOf<V, B>, &'w [WideOf<V, E>]>;
 
 /// Whether two units, each with its bodies and elements, have the same bodies, joints and laws, so that numbers alone differ.
-pub fn are_alike<B, E>(one: (&B, &[E]), other: (&B, &[E])) -> bool
+pub fn same_structure<B, E>(one: (&B, &[E]), other: (&B, &[E])) -> bool
 where
     B: Cast<Of<f64>: PartialEq>,
     E: Cast<Of<f64>: PartialEq>,
@@ -145,8 +145,8 @@ fn integrate<V: Simd, B, E, const D: usize>(_instructions: V, units: &mut [Unit<
 where
     B: Cast<Of<Wide<V>>: Copy> + Bodies<f64, D>,
     E: Cast,
-    WideOf<V, B>: Spinning<Wide<V>, D, Pose: WidePose<B::Pose>>,
-    WideOf<V, E>: Touching<Wide<V>, WideOf<V, B>, D, Internal: Default>,
+    WideOf<V, B>: AngularSpeeds<Wide<V>, D, Pose: WidePose<B::Pose>>,
+    WideOf<V, E>: HasContacts<Wide<V>, WideOf<V, B>, D, Internal: Default>,
 {
     let Some(first) = units.first() else { return };
     let still = SVector::zeros();
@@ -155,14 +155,14 @@ where
     let mut steps: u32 = 0;
     loop {
         let fresh = all.load(units);
-        if !all.are_at_work(units.len()) {
+        if !all.is_running(units.len()) {
             return;
         }
         let (bodies, elements) = gathered::<V, _, _, D>(units, &all.sources);
         let system: WideSystem<V, B, E> = System::new(bodies, &elements[..]);
-        all.begin(&system, fresh, units);
+        all.start_units(&system, fresh, units);
         let mut at_start = None;
-        while all.are_at_work(units.len()) {
+        while all.is_running(units.len()) {
             if steps.is_multiple_of(STEPS_PER_LOOK) && interrupt::requested() {
                 return all.interrupt(units);
             }
@@ -174,9 +174,9 @@ where
                 None => system.differentiated(next.t, pose, internal, velocity),
             };
             let (step, accelerations) = Rodas4::dense_step(&system, next.t, next.length, &all.motion, &here);
-            let good = all.judge(&system, &step, &next, units);
+            let good = all.check_steps(&system, &step, &next, units);
             at_start = (good == Wide::splat(0.0)).then_some(here);
-            all.accept(&system, (&step.motion, &accelerations), (good, &next), units);
+            all.accept_steps(&system, (&step.motion, &accelerations), (good, &next), units);
         }
     }
 }
@@ -195,13 +195,13 @@ pub fn lanes(most: usize) -> Option<usize> {
     None
 }
 
-/// Bodies with elements whose units are moved several at a time.
-pub trait Together<const D: usize>: Bodies<f64, D> + Sized {
+/// Bodies whose units can be simulated several at a time.
+pub trait OnLanes<const D: usize>: Bodies<f64, D> + Sized {
     /// What acts on them.
     type Element;
 
-    /// Moves `units` that are [alike](are_alike), as many at a time as there are [`lanes`].
-    fn move_together(lanes: usize, units: &mut [Unit<Self, Self::Element, D>]);
+    /// Moves `units` that are [alike](same_structure), as many at a time as there are [`lanes`].
+    fn integrate_on_lanes(lanes: usize, units: &mut [Unit<Self, Self::Element, D>]);
 }
 
 /// Units to be moved by wide instructions.
@@ -209,8 +209,8 @@ struct Work<'w, 'a, B: Bodies<f64, D>, E, const D: usize> {
     units: &'w mut [Unit<'a, B, E, D>],
 }
 
-/// Compiled here, so that what calls it does not compile a step again.
-macro_rules! together {
+/// For concrete types, so that steps are compiled in this crate and not in those that call it.
+macro_rules! on_lanes {
     ($($dimension:literal),*) => { $(
         impl WithSimd for Work<'_, '_, PlanarTree<f64, $dimension>, PlanarElement<$dimension>, $dimension> {
             type Output = ();
@@ -221,10 +221,10 @@ macro_rules! together {
             }
         }
 
-        impl Together<$dimension> for PlanarTree<f64, $dimension> {
+        impl OnLanes<$dimension> for PlanarTree<f64, $dimension> {
             type Element = PlanarElement<$dimension>;
 
-            fn move_together(lanes: usize, units: &mut [Unit<Self, Self::Element, $dimension>]) {
+            fn integrate_on_lanes(lanes: usize, units: &mut [Unit<Self, Self::Element, $dimension>]) {
                 #[cfg(target_arch = "x86_64")]
                 match (lanes, pulp::x86::V4::try_new(), pulp::x86::V3::try_new()) {
                     (8, Some(avx512), _) => Simd::vectorize(avx512, Work { units }),
@@ -236,4 +236,4 @@ macro_rules! together {
     )* };
 }
 
-together!(3, 6);
+on_lanes!(3, 6);

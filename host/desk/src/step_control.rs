@@ -1,4 +1,4 @@
-//! How long steps are, by the errors that they make and by what happens in them.
+//! Step-size control.
 
 use crate::{
     closing::Between,
@@ -11,9 +11,9 @@ const LEAST_STEP: f64 = 1e-12;
 /// More steps than any scene takes that can be solved; beyond, the step has stalled.
 const STEPS_MOST: u32 = 2_000_000;
 
-/// How far an integration is, and how long its next step is.
+/// Time and step length of an error-controlled integration.
 #[derive(Clone, Copy, Debug)]
-pub struct Pace {
+pub struct StepControl {
     /// Time (s).
     pub t: f64,
     /// Length (s) that its errors allow.
@@ -22,13 +22,13 @@ pub struct Pace {
     pub effort: Effort,
 }
 
-impl Default for Pace {
+impl Default for StepControl {
     fn default() -> Self {
         Self { t: 0.0, h: FIRST_STEP, effort: Effort::default() }
     }
 }
 
-impl Pace {
+impl StepControl {
     /// Steps so far, refused ones among them.
     pub fn tried(&self) -> u32 {
         self.effort.accepted + self.effort.refused
@@ -47,7 +47,7 @@ impl Pace {
     ///
     /// # Errors
     /// [`Stopped::Unsolved`] if no shorter one would be.
-    pub fn is_good(&mut self, error: f64, length: f64, order: u32) -> Result<bool, Stopped> {
+    pub fn accepts_error(&mut self, error: f64, length: f64, order: u32) -> Result<bool, Stopped> {
         let error = Some(error).filter(|error| error.is_finite()).unwrap_or(1e12);
         let factor = (SAFETY / root(error.max(1e-12), order)).clamp(CHANGES[0], CHANGES[1]);
         self.h = (length * factor).clamp(LEAST_STEP, GREATEST_STEP);
@@ -61,7 +61,7 @@ impl Pace {
     }
 
     /// Whether a good step of this `length` (s) has to be shorter because of what happens in it.
-    pub fn is_shortened(&mut self, between: Between, length: f64) -> bool {
+    pub fn shortens(&mut self, between: Between, length: f64) -> bool {
         let Between::Closes(share) = between else { return false };
         if length <= LEAST_STEP {
             return false;

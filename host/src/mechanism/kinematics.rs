@@ -1,4 +1,4 @@
-//! How bodies of each kind are kept and told of: in a plane, free in space, and on ideal joints in space.
+//! Kinematics of bodies in a plane, free in space, and on ideal joints in space.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 use slipfit_core::{
@@ -6,10 +6,10 @@ use slipfit_core::{
     pose::Pose,
     system::{
         Bodies, Reduced,
-        planar::{At, Placed as InPlanePlaced, PlanarTree, Point},
+        planar::{At, Placed as PlanarPlaced, PlanarTree, Point},
         spatial::{
             FreeBodies, PlacedBody,
-            tree::{Placed as OnJointsPlaced, SpatialTree},
+            tree::{Placed as JointedPlaced, SpatialTree},
         },
     },
 };
@@ -22,47 +22,47 @@ use super::{
     state::{State, half_angle, whole_angle},
 };
 
-/// What is made of the poses `P` of some bodies with `D` coordinates.
-pub(super) trait Told<P, const D: usize> {
-    /// Looks at the bodies at a `pose` and a `velocity` that come after the last ones.
-    fn look(&mut self, pose: &P, velocity: &SVector<f64, D>);
+/// Motions of bodies from poses `P` and velocities of `D` coordinates.
+pub(super) trait Kinematics<P, const D: usize> {
+    /// Moves the bodies to a `pose` and a `velocity` that come after the last ones.
+    fn update(&mut self, pose: &P, velocity: &SVector<f64, D>);
 
-    /// The bodies where they were looked at last.
+    /// The bodies at the last pose.
     fn bodies(&self) -> &[PlacedBody<f64>];
 
-    /// How much (rad) a body has turned there about the axes of the frame, see [`BodyMotion::turned`].
-    fn turned(&mut self, body: usize) -> Vector3<f64>;
+    /// Rotation (rad) of a body there about the axes of the frame since the drawn pose, see [`BodyMotion::turned`].
+    fn rotation(&mut self, body: usize) -> Vector3<f64>;
 
-    /// The acceleration (m/s²) of a body's centre of mass there, where coordinates have these.
+    /// Acceleration (m/s²) of a body's centre of mass there, for these accelerations of the coordinates.
     fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64>;
 
-    /// The same of its turning (rad/s²).
-    fn turning(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64>;
+    /// The same of its rotation (rad/s²).
+    fn angular_acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64>;
 
     /// The state at a `pose` and `rates` that come after the last ones.
     fn state(&mut self, pose: &P, rates: [f64; D]) -> State<D>;
 
-    /// Puts how the bodies move in place of what was `told`.
-    fn tell(&self, state: &State<D>, told: &mut Vec<BodyMotion>);
+    /// Replaces `motions` by those of the bodies in a `state`.
+    fn body_motions(&self, state: &State<D>, motions: &mut Vec<BodyMotion>);
 
     /// The gap (m) of each element that is a contact.
     fn gaps(&self, pose: &P, velocity: &SVector<f64, D>) -> Vec<Option<f64>>;
 }
 
 /// Bodies in a plane.
-pub(super) struct InPlane<'a, const D: usize> {
+pub(super) struct PlanarKinematics<'a, const D: usize> {
     tree: &'a PlanarTree<f64, D>,
     elements: &'a [PlanarElement<D>],
     bodies: PlanarBodies<'a, D>,
     pose: [[f64; 2]; D],
-    placed: InPlanePlaced<f64, D>,
-    looked: Vec<PlacedBody<f64>>,
+    placed: PlanarPlaced<f64, D>,
+    placed_bodies: Vec<PlacedBody<f64>>,
     /// Angles (rad) of the coordinates when they were asked for last.
     angles: [f64; D],
     last: [f64; D],
 }
 
-impl<'a, const D: usize> InPlane<'a, D> {
+impl<'a, const D: usize> PlanarKinematics<'a, D> {
     /// The bodies of `mechanism`, which start at the coordinates `start` (m, rad).
     pub fn new(
         mechanism: &Mechanism,
@@ -78,15 +78,15 @@ impl<'a, const D: usize> InPlane<'a, D> {
             bodies: PlanarBodies::of(mechanism, mounts, tree),
             pose,
             placed: tree.placed(&pose, &SVector::zeros()),
-            looked: Vec::new(),
+            placed_bodies: Vec::new(),
             angles: start,
             last: start,
         }
     }
 }
 
-impl<const D: usize> Told<[[f64; 2]; D], D> for InPlane<'_, D> {
-    fn look(&mut self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>) {
+impl<const D: usize> Kinematics<[[f64; 2]; D], D> for PlanarKinematics<'_, D> {
+    fn update(&mut self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>) {
         self.pose = *pose;
         self.placed = self.tree.placed(pose, velocity);
         let (tree, placed) = (self.tree, &self.placed);
@@ -103,15 +103,15 @@ impl<const D: usize> Told<[[f64; 2]; D], D> for InPlane<'_, D> {
                 rotation_w: rotation,
             }
         };
-        self.looked.clear();
-        self.looked.extend(self.bodies.bodies.iter().map(body));
+        self.placed_bodies.clear();
+        self.placed_bodies.extend(self.bodies.bodies.iter().map(body));
     }
 
     fn bodies(&self) -> &[PlacedBody<f64>] {
-        &self.looked
+        &self.placed_bodies
     }
 
-    fn turned(&mut self, body: usize) -> Vector3<f64> {
+    fn rotation(&mut self, body: usize) -> Vector3<f64> {
         let Some(turn) = self.bodies.bodies[body].2 else { return Vector3::zeros() };
         self.angles[turn] = next_to(whole_angle(self.pose[turn]), self.angles[turn]);
         Vector3::z() * self.angles[turn]
@@ -127,7 +127,7 @@ impl<const D: usize> Told<[[f64; 2]; D], D> for InPlane<'_, D> {
         Vector3::new(moved.x, moved.y, 0.0)
     }
 
-    fn turning(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
+    fn angular_acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
         let (.., turn) = &self.bodies.bodies[body];
         Vector3::z() * turn.map_or(0.0, |turn| of_coordinates[turn])
     }
@@ -138,8 +138,8 @@ impl<const D: usize> Told<[[f64; 2]; D], D> for InPlane<'_, D> {
         state
     }
 
-    fn tell(&self, state: &State<D>, told: &mut Vec<BodyMotion>) {
-        self.bodies.tell(state, told);
+    fn body_motions(&self, state: &State<D>, motions: &mut Vec<BodyMotion>) {
+        self.bodies.tell(state, motions);
     }
 
     fn gaps(&self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>) -> Vec<Option<f64>> {
@@ -149,34 +149,34 @@ impl<const D: usize> Told<[[f64; 2]; D], D> for InPlane<'_, D> {
 }
 
 /// Free bodies in space.
-pub(super) struct InSpace<'a, const N: usize, const D: usize> {
+pub(super) struct FreeKinematics<'a, const N: usize, const D: usize> {
     bodies: &'a FreeBodies<f64, N, D>,
     elements: &'a [SpatialElement],
     at: ([Pose<f64>; N], SVector<f64, D>),
-    looked: [PlacedBody<f64>; N],
+    placed_bodies: [PlacedBody<f64>; N],
     last: State<D>,
 }
 
-impl<'a, const N: usize, const D: usize> InSpace<'a, N, D> {
+impl<'a, const N: usize, const D: usize> FreeKinematics<'a, N, D> {
     /// These `bodies`.
     pub fn new(bodies: &'a FreeBodies<f64, N, D>, elements: &'a [SpatialElement]) -> Self {
         let at = (bodies.nominal(), SVector::zeros());
-        let looked = bodies.placed(&at.0, &at.1).bodies;
-        Self { bodies, elements, at, looked, last: State::at_rest([0.0; D]) }
+        let placed_bodies = bodies.placed(&at.0, &at.1).bodies;
+        Self { bodies, elements, at, placed_bodies, last: State::at_rest([0.0; D]) }
     }
 }
 
-impl<const N: usize, const D: usize> Told<[Pose<f64>; N], D> for InSpace<'_, N, D> {
-    fn look(&mut self, poses: &[Pose<f64>; N], velocity: &SVector<f64, D>) {
+impl<const N: usize, const D: usize> Kinematics<[Pose<f64>; N], D> for FreeKinematics<'_, N, D> {
+    fn update(&mut self, poses: &[Pose<f64>; N], velocity: &SVector<f64, D>) {
         self.at = (*poses, *velocity);
-        self.looked = self.bodies.placed(poses, velocity).bodies;
+        self.placed_bodies = self.bodies.placed(poses, velocity).bodies;
     }
 
     fn bodies(&self) -> &[PlacedBody<f64>] {
-        &self.looked
+        &self.placed_bodies
     }
 
-    fn turned(&mut self, body: usize) -> Vector3<f64> {
+    fn rotation(&mut self, body: usize) -> Vector3<f64> {
         let (poses, velocity) = self.at;
         let state = self.state(&poses, velocity.into());
         Vector3::from_column_slice(&state.places[6 * body + 3..6 * body + 6])
@@ -186,8 +186,8 @@ impl<const N: usize, const D: usize> Told<[Pose<f64>; N], D> for InSpace<'_, N, 
         of_coordinates.fixed_rows::<3>(6 * body).into()
     }
 
-    fn turning(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
-        self.looked[body].to_frame * of_coordinates.fixed_rows::<3>(6 * body + 3)
+    fn angular_acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
+        self.placed_bodies[body].to_frame * of_coordinates.fixed_rows::<3>(6 * body + 3)
     }
 
     fn state(&mut self, poses: &[Pose<f64>; N], rates: [f64; D]) -> State<D> {
@@ -195,8 +195,8 @@ impl<const N: usize, const D: usize> Told<[Pose<f64>; N], D> for InSpace<'_, N, 
         self.last
     }
 
-    fn tell(&self, state: &State<D>, told: &mut Vec<BodyMotion>) {
-        columns::spatial(state, told);
+    fn body_motions(&self, state: &State<D>, motions: &mut Vec<BodyMotion>) {
+        columns::spatial(state, motions);
     }
 
     fn gaps(&self, poses: &[Pose<f64>; N], velocity: &SVector<f64, D>) -> Vec<Option<f64>> {
@@ -206,17 +206,17 @@ impl<const N: usize, const D: usize> Told<[Pose<f64>; N], D> for InSpace<'_, N, 
 }
 
 /// Bodies in space on ideal joints.
-pub(super) struct OnJoints<'a, const N: usize, const W: usize, const D: usize> {
+pub(super) struct JointedKinematics<'a, const N: usize, const W: usize, const D: usize> {
     tree: &'a SpatialTree<f64, N, W, D>,
     elements: &'a [SpatialElement],
     bodies: &'a JointedBodies<N, W, D>,
     at: ([[f64; 2]; D], SVector<f64, D>),
-    placed: OnJointsPlaced<f64, N, W, D>,
+    placed: JointedPlaced<f64, N, W, D>,
     motions: Vec<BodyMotion>,
     last: State<D>,
 }
 
-impl<'a, const N: usize, const W: usize, const D: usize> OnJoints<'a, N, W, D> {
+impl<'a, const N: usize, const W: usize, const D: usize> JointedKinematics<'a, N, W, D> {
     /// These `bodies` of `tree`, which start at the coordinates `start` (m, rad).
     pub fn new(
         tree: &'a SpatialTree<f64, N, W, D>,
@@ -230,8 +230,8 @@ impl<'a, const N: usize, const W: usize, const D: usize> OnJoints<'a, N, W, D> {
     }
 }
 
-impl<const N: usize, const W: usize, const D: usize> Told<[[f64; 2]; D], D> for OnJoints<'_, N, W, D> {
-    fn look(&mut self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>) {
+impl<const N: usize, const W: usize, const D: usize> Kinematics<[[f64; 2]; D], D> for JointedKinematics<'_, N, W, D> {
+    fn update(&mut self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>) {
         self.at = (*pose, *velocity);
         self.placed = self.tree.placed(pose, velocity);
     }
@@ -240,11 +240,11 @@ impl<const N: usize, const W: usize, const D: usize> Told<[[f64; 2]; D], D> for 
         &self.placed.free.bodies
     }
 
-    fn turned(&mut self, body: usize) -> Vector3<f64> {
+    fn rotation(&mut self, body: usize) -> Vector3<f64> {
         let (pose, velocity) = self.at;
         let state = self.state(&pose, velocity.into());
         let mut motions = std::mem::take(&mut self.motions);
-        self.tell(&state, &mut motions);
+        self.body_motions(&state, &mut motions);
         self.motions = motions;
         self.motions[body].turned
     }
@@ -253,7 +253,7 @@ impl<const N: usize, const W: usize, const D: usize> Told<[[f64; 2]; D], D> for 
         self.tree.accelerations(&self.placed, of_coordinates)[body][0]
     }
 
-    fn turning(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
+    fn angular_acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {
         self.tree.accelerations(&self.placed, of_coordinates)[body][1]
     }
 
@@ -262,8 +262,8 @@ impl<const N: usize, const W: usize, const D: usize> Told<[[f64; 2]; D], D> for 
         self.last
     }
 
-    fn tell(&self, state: &State<D>, told: &mut Vec<BodyMotion>) {
-        self.bodies.tell(state, told);
+    fn body_motions(&self, state: &State<D>, motions: &mut Vec<BodyMotion>) {
+        self.bodies.tell(state, motions);
     }
 
     fn gaps(&self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>) -> Vec<Option<f64>> {
