@@ -7,7 +7,7 @@
 use std::ops::ControlFlow;
 
 use slipfit_core::{
-    ParameterError, SVector,
+    SVector,
     integrator::{Dense, MotionOf, Step, StepOf},
     mechanism::Mechanism,
 };
@@ -17,6 +17,8 @@ use crate::{
     closing::{self, Gaps},
     step_control::StepControl,
 };
+
+pub use crate::step_control::{CHANGES, Effort, FIRST_STEP, GREATEST_STEP, SAFETY, Stopped};
 
 /// How well each step has to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,58 +101,9 @@ pub fn greater(one: f64, other: f64) -> f64 {
     if one > other || one.is_nan() { one } else { other }
 }
 
-/// What an integration took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct Effort {
-    /// Accepted steps.
-    pub accepted: u32,
-    /// Refused steps.
-    pub refused: u32,
-}
-
-/// Why an integration did not come to its end.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Stopped {
-    /// A parameter that core refuses: which, its value, and what is allowed.
-    #[error("{0}")]
-    Parameter(String),
-    /// No step from this time (s) on meets the tolerance, however short.
-    #[error("from t = {0} s on no step meets the tolerance, however short")]
-    Unsolved(f64),
-    /// The motion left the finite range.
-    #[error("the motion left the finite range at t = {time} s: take a smaller step than {step} s")]
-    NotFinite {
-        /// When (s).
-        time: f64,
-        /// Step (s).
-        step: f64,
-    },
-    /// Stopped from outside.
-    #[error("interrupted")]
-    Interrupted,
-}
-
-impl<S: std::fmt::Display> From<ParameterError<S>> for Stopped {
-    fn from(error: ParameterError<S>) -> Self {
-        Self::Parameter(error.to_string())
-    }
-}
-
 /// Error of place (m) allowed with 1 N of error of force: 3 nm for each 0.1 mN. Errors of place last, and between tight contacts
 /// they cost more force later than those of velocity do now.
 pub const PLACE: f64 = 3e-5;
-
-/// Greatest step (s).
-pub const GREATEST_STEP: f64 = 0.02;
-
-/// How much shorter than the estimate allows a step is.
-pub const SAFETY: f64 = 0.8;
-
-/// How much the next step may be shorter and longer. Contacts close and open too suddenly for steps that grow faster.
-pub const CHANGES: [f64; 2] = [0.2, 3.0];
-
-/// First step (s).
-pub const FIRST_STEP: f64 = 2e-5;
 
 /// Steps between two looks at whether somebody asked to stop.
 pub(crate) const STEPS_PER_LOOK: u32 = 256;

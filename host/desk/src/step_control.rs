@@ -1,15 +1,63 @@
 //! Step-size control.
 
-use crate::{
-    closing::Between,
-    error_control::{CHANGES, Effort, FIRST_STEP, GREATEST_STEP, SAFETY, Stopped},
-};
+use slipfit_core::ParameterError;
+
+use crate::closing::Between;
+
+/// Greatest step (s).
+pub const GREATEST_STEP: f64 = 0.02;
+
+/// How much shorter than the estimate allows a step is.
+pub const SAFETY: f64 = 0.8;
+
+/// How much the next step may be shorter and longer. Contacts close and open too suddenly for steps that grow faster.
+pub const CHANGES: [f64; 2] = [0.2, 3.0];
+
+/// First step (s).
+pub const FIRST_STEP: f64 = 2e-5;
 
 /// Least step (s).
 const LEAST_STEP: f64 = 1e-12;
 
 /// More steps than any scene takes that can be solved; beyond, the step has stalled.
 const STEPS_MOST: u32 = 2_000_000;
+
+/// What an integration took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Effort {
+    /// Accepted steps.
+    pub accepted: u32,
+    /// Refused steps.
+    pub refused: u32,
+}
+
+/// Why an integration did not come to its end.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Stopped {
+    /// A parameter that core refuses: which, its value, and what is allowed.
+    #[error("{0}")]
+    Parameter(String),
+    /// No step from this time (s) on meets the tolerance, however short.
+    #[error("from t = {0} s on no step meets the tolerance, however short")]
+    Unsolved(f64),
+    /// The motion left the finite range.
+    #[error("the motion left the finite range at t = {time} s: take a smaller step than {step} s")]
+    NotFinite {
+        /// When (s).
+        time: f64,
+        /// Step (s).
+        step: f64,
+    },
+    /// Stopped from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl<S: std::fmt::Display> From<ParameterError<S>> for Stopped {
+    fn from(error: ParameterError<S>) -> Self {
+        Self::Parameter(error.to_string())
+    }
+}
 
 /// Time and step length of an error-controlled integration.
 #[derive(Clone, Copy, Debug)]

@@ -33,11 +33,8 @@ impl<S, const D: usize, H: Turns, P: Turns> Between<S, D, H, P> {
 /// `columns` above rows of zeros.
 #[inline(always)]
 fn above_zeros<S: Scalar, const D: usize>(columns: &[Vector2<S>; D]) -> SMatrix<S, 4, D> {
-    let mut above = SMatrix::<S, 4, D>::zeros();
-    for (above, column) in above.data.0.iter_mut().zip(columns) {
-        (above[0], above[1]) = (column.x, column.y);
-    }
-    above
+    let zero = S::zero();
+    SMatrix::<S, 4, D>::from_columns(&columns.map(|column| SVector::<S, 4>::new(column.x, column.y, zero, zero)))
 }
 
 impl<S: Scalar, J: Topology<D>, H: Carrier<D>, P: Carrier<D>, const D: usize> GradientLink<S, PlanarTree<S, D, J>, D, 4>

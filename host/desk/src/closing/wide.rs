@@ -46,7 +46,7 @@ impl<S: Real> WideGaps<S> {
         most
     }
 
-    /// [`Gaps::until_pushed`] of the unit on a `lane`.
+    /// [`Gaps::until_pushed`](super::Gaps::until_pushed) of the unit on a `lane`.
     pub fn until_pushed(&self, lane: usize, depth: f64) -> f64 {
         until_pushed(self.of_unit(lane), depth)
     }
@@ -62,7 +62,7 @@ impl<S: Real> WideGaps<S> {
         may
     }
 
-    /// [`between`] of the unit on a `lane`.
+    /// [`between`](super::between) of the unit on a `lane`.
     pub fn between(&self, after: &Self, lane: usize, length: f64, depth: f64) -> Between {
         let turn = self.spin.get(lane).max(after.spin.get(lane)) * length;
         between_each(self.of_unit(lane).zip(after.of_unit(lane)), length, turn, depth)

@@ -8,7 +8,7 @@ use slipfit_core::{
     system::{Bodies, System},
 };
 
-use super::{Unit, Wide, WidePose};
+use super::unit::{Unit, Wide, WidePose};
 use crate::{
     closing::WideGaps,
     element::{AngularSpeeds, HasContacts},
