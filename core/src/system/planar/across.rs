@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     SMatrix, SVector, Scalar, Vector2,
-    product::{applied, transposed_in_plane},
+    product::{applied, is_wide, transposed_in_plane},
     system::{GradientLink, Seen},
 };
 
@@ -31,6 +31,9 @@ crate::cast::cast!([] [D] Across: Across<f64, D> => T Across<T, D> { point, seat
 /// The `columns` in these axes.
 #[inline(always)]
 fn in_axes<S: Scalar, const D: usize>(axes: &Matrix2<S>, columns: &[Vector2<S>; D]) -> SMatrix<S, 2, D> {
+    if !is_wide::<S>() {
+        return SMatrix::<S, 2, D>::from_columns(&columns.map(|column| transposed_in_plane(axes, &column)));
+    }
     let mut turned = SMatrix::<S, 2, D>::zeros();
     for (turned, column) in turned.data.0.iter_mut().zip(columns) {
         *turned = transposed_in_plane(axes, column).data.0[0];
