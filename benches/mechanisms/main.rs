@@ -40,7 +40,7 @@ const OF_BDF: f64 = 0.5;
 /// The most that elements chosen at run time may take of the time of composed ones.
 const OF_COMPOSED: f64 = 1.3;
 const TURNS: usize = 15;
-/// How many times as fast units have to be that are moved four and eight at a time, what is made of their motions included.
+/// How many times as fast units have to run four and eight at a time, with all that is computed from their motions.
 const TOGETHER: [f64; 2] = [1.4, 1.7];
 
 fn main() -> ExitCode {
@@ -89,9 +89,9 @@ fn main() -> ExitCode {
         let turns: Vec<[f64; 3]> = turns.collect();
         let rates = [0, 1, 2].map(|k| median(turns.iter().map(|rates| rates[k])));
         let ratios = [1, 2].map(|k| median(turns.iter().map(|rates| rates[k] / rates[0])));
-        let told = |k: usize| format!("{:.0} ({:.2} times)", rates[k], ratios[k - 1]);
-        println!("{name:20} {:>10.0} {:>18} {:>18}", rates[0], told(1), told(2));
-        let widest = slipfit_desk::units::lanes(usize::MAX).unwrap_or(1);
+        let text = |k: usize| format!("{:.0} ({:.2} times)", rates[k], ratios[k - 1]);
+        println!("{name:20} {:>10.0} {:>18} {:>18}", rates[0], text(1), text(2));
+        let widest = slipfit_desk::units::lane_count(usize::MAX).unwrap_or(1);
         fails |= (widest >= 4 && ratios[0] < TOGETHER[0]) || (widest >= 8 && ratios[1] < TOGETHER[1]);
     }
     ExitCode::from(u8::from(fails))

@@ -33,14 +33,6 @@ impl<A: Cast, B: Cast> Cast for (A, B) {
     }
 }
 
-impl<C: Cast> Cast for Option<C> {
-    type Of<T: Scalar> = Option<C::Of<T>>;
-
-    fn cast<T: Scalar>(&self, number: &mut impl FnMut(f64) -> T) -> Option<C::Of<T>> {
-        self.as_ref().map(|one| one.cast(number))
-    }
-}
-
 impl<C: Cast, const N: usize> Cast for [C; N] {
     type Of<T: Scalar> = [C::Of<T>; N];
 

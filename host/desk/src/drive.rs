@@ -23,7 +23,7 @@ impl Cast for Pieces {
     }
 }
 
-impl<S: Real> Command<S> for Pieces<S> {
+impl<S: Scalar + PartialOrd> Command<S> for Pieces<S> {
     fn piece(&self, t: S) -> Piece<S> {
         match self.0.partition_point(|piece| piece.start <= t) {
             0 => Piece { start: S::zero(), coefficients: [S::zero(); 4] },

@@ -1,6 +1,6 @@
 //! Elements chosen at run time: the laws and links are core's, and so are the bits.
 
-mod in_space;
+mod spatial;
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ use slipfit_core::{
         Assembly, Bodies, Element, Elements, Law, Link,
         law::{Contact, Contoured, Journal, LineSpring, Motor, Pad, Pusher, Spring},
         planar::{self, PlanarTree},
-        spatial::{self, FreeBodies},
+        spatial::{FreeBodies, Placed},
     },
 };
 
@@ -26,7 +26,7 @@ use crate::{
     real::Real,
 };
 
-pub use in_space::{SpatialContact, SpatialElement};
+pub use spatial::{SpatialContact, SpatialElement};
 
 /// Over how many stick bands static friction falls halfway to kinetic where a stick band is used in place of true stick: at the end of
 /// the band a thousandth of their difference is lost.
@@ -96,8 +96,8 @@ fn act<S, B, L, W, const D: usize, const R: usize>(
     sum.add::<L, W, R>(link, at, &view, &response);
 }
 
-/// [`act`] in a function of its own: of what is seldom asked for, and would be compiled into every mechanism. For one unit: several have
-/// no such elements.
+/// [`act`] in a function of its own, of what is seldom asked for and would be compiled into every mechanism. Nothing on lanes, see
+/// [`PlanarElement::runs_on_lanes`].
 #[inline(always)]
 fn act_apart<S, B, L, W, const D: usize, const R: usize>(
     element: &Element<L, W, R>,
@@ -130,7 +130,7 @@ fn act_out_of_line<S, B, L, W, const D: usize, const R: usize>(
     act(element, way, at, &(), sum);
 }
 
-/// The gap (m) of a contact, which is negative where it is pressed on_lanes.
+/// The gap (m) of a contact, which is negative where it is pressed together.
 fn gap<B: Bodies<f64, D>, L: Link<f64, B, D, R>, W: Law<f64, R>, const D: usize, const R: usize>(
     element: &Element<L, W, R>,
     at: (&B, &B::Placed),
@@ -168,13 +168,9 @@ impl<S: Real, const D: usize> AngularSpeeds<S, D> for PlanarTree<S, D> {
     }
 }
 
-impl<S: Real, const N: usize, const D: usize> AngularSpeeds<S, D> for FreeBodies<S, N, D> {
-    #[inline(always)]
-    fn max_angular_speed(&self, placed: &spatial::Placed<S, N>) -> S {
-        placed.bodies.iter().fold(S::zero(), |most, body| {
-            let [x, y, z] = *body.rotation_w.as_ref();
-            (x * x + y * y + z * z).sqrt().max_of(most)
-        })
+impl<const N: usize, const D: usize> AngularSpeeds<f64, D> for FreeBodies<f64, N, D> {
+    fn max_angular_speed(&self, placed: &Placed<f64, N>) -> f64 {
+        placed.bodies.iter().fold(0.0, |most, body| most.max(body.rotation_w.norm()))
     }
 }
 
@@ -241,6 +237,22 @@ cast_variants!([D] PlanarElement: PlanarElement<D> => T PlanarElement<D, T> {
 type Planar<'a, S, const D: usize> = (&'a PlanarTree<S, D>, &'a planar::Placed<S, D>);
 
 impl<const D: usize> PlanarElement<D> {
+    /// Whether several units with this element can be integrated at a time. Line springs and contoured walls are not compiled for lanes;
+    /// commands other than a ramp and Stribeck friction would be slower there than one by one.
+    pub fn runs_on_lanes(&self) -> bool {
+        let by_coulomb = |contact: &AnyContact| !matches!(contact.friction, AnySliding::Stribeck(_));
+        let by_ramp =
+            |drive: &AnyDrive| matches!(drive, AnyDrive::Ramp(_) | AnyDrive::RampTrain(_) | AnyDrive::Friction(_));
+        match self {
+            Self::Journal(element) => by_coulomb(&element.law.contact),
+            Self::Pad(element) => by_coulomb(&element.law.contact),
+            Self::Motor(element) => by_ramp(&element.law.0),
+            Self::Pusher(element) => by_ramp(&element.law.0),
+            Self::Spring(_) => true,
+            Self::Contour(_) | Self::Line(_) => false,
+        }
+    }
+
     /// The gap (m) of the contact that it is, if it is one.
     pub fn gap(&self, at: Planar<f64, D>) -> Option<f64> {
         match self {

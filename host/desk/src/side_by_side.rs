@@ -83,7 +83,7 @@ impl Kind {
     }
 
     /// `four` contacts of this kind as one. A `stick_band` (m/s) stands for true stick.
-    fn on_lanes<V: Simd>(&self, four: &[SpatialContact; LANES], stick_band: f64) -> Option<SpatialContact<Quad<V>>> {
+    fn together<V: Simd>(&self, four: &[SpatialContact; LANES], stick_band: f64) -> Option<SpatialContact<Quad<V>>> {
         let contact = contact::<Quad<V>>(&self.laws, stick_band).ok()?;
         let [body, from] = self.bodies;
         Some(match self.shape {
@@ -234,7 +234,7 @@ impl<V: Simd, const N: usize, const D: usize> Quads<V, N, D> {
     /// The elements of `groups` on the `bodies`.
     fn new(instructions: V, bodies: &FreeBodies<f64, N, D>, groups: Groups, stick_band: f64) -> Self {
         let mut quads = Vec::new();
-        let rest = groups.fours(|kind, four| match kind.on_lanes(four, stick_band) {
+        let rest = groups.fours(|kind, four| match kind.together(four, stick_band) {
             Some(quad) => {
                 quads.push(quad);
                 true

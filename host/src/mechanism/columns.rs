@@ -5,7 +5,7 @@ use slipfit_core::{
     SVector,
     system::{
         Bodies,
-        planar::{PlanarTree, Point},
+        planar::{Placed, PlanarTree, Point},
         spatial::{
             PlacedBody,
             tree::{Kind as SpatialKind, SpatialTree},
@@ -41,7 +41,7 @@ pub struct BodyMotion {
 }
 
 impl BodyMotion {
-    /// Rotation vector from the drawn pose (rad); in a plane its third part is the angle. It goes on point_excess full turns.
+    /// Rotation vector from the drawn pose (rad); in a plane its third part is the angle. It goes on beyond full turns.
     pub fn turn(&self) -> Vector3<f64> {
         if self.is_axial { self.turned } else { rotation_vector(&self.orientation, &self.before) }
     }
@@ -64,27 +64,33 @@ impl<'a, const D: usize> PlanarBodies<'a, D> {
         Self { tree, bodies: mechanism.bodies.iter().enumerate().map(body).collect() }
     }
 
+    /// Displacement (m) and velocity (m/s) of the centre of mass of each body that is `placed`, and what turns it.
+    pub fn moved(&self, placed: &Placed<f64, D>) -> impl Iterator<Item = ([Vector3<f64>; 2], Option<usize>)> {
+        self.bodies.iter().map(|(centre, drawn, turn)| {
+            let [place, velocity] = self.tree.motion_of(centre, placed);
+            ([place - drawn, velocity].map(|vector| Vector3::new(vector.x, vector.y, 0.0)), *turn)
+        })
+    }
+
     /// Puts how they move in place of what was `told`.
     pub fn tell(&self, state: &State<D>, told: &mut Vec<BodyMotion>) {
         let pose = self.tree.pose(state.places, half_angle);
         let placed = self.tree.placed(&pose, &SVector::from(state.rates));
-        let body = |(centre, drawn, turn): &(Point<f64, D>, Vector2<f64>, Option<usize>)| {
-            let [place, velocity] = self.tree.motion_of(centre, &placed);
-            let moved = place - drawn;
+        let body = |([displacement, velocity], turn): ([Vector3<f64>; 2], Option<usize>)| {
             let about = |values: &[f64; D]| Vector3::z() * turn.map_or(0.0, |turn| values[turn]);
             let [cos, sin] = turn.map_or([1.0, 0.0], |turn| pose[turn]);
             BodyMotion {
-                displacement: Vector3::new(moved.x, moved.y, 0.0),
+                displacement,
                 orientation: UnitQuaternion::new_unchecked(Quaternion::new(cos, 0.0, 0.0, sin)),
                 turned: about(&state.places),
                 is_axial: true,
                 before: Vector3::zeros(),
-                velocity: Vector3::new(velocity.x, velocity.y, 0.0),
+                velocity,
                 spin: about(&state.rates),
             }
         };
         told.clear();
-        told.extend(self.bodies.iter().map(body));
+        told.extend(self.moved(&placed).map(body));
     }
 }
 
@@ -218,7 +224,7 @@ impl Mechanism {
         if self.planar { &IN_A_PLANE } else { &IN_SPACE }
     }
 
-    /// What each drive measured_motion and does at time `t` (s): speed, force and travel along its axis, or angular velocity, torque
+    /// What each drive sees and does at time `t` (s): speed, force and travel along its axis, or angular velocity, torque
     /// and angle about it.
     pub fn drives_at<'a>(&'a self, t: f64, motions: &'a [BodyMotion]) -> impl Iterator<Item = Instant> + 'a {
         self.drives.iter().map(move |named| {

@@ -39,7 +39,7 @@ pub struct NamedDrive {
     pub train: Option<TrainData<f64>>,
     /// Whether it controls the speed of the centre of mass, not that of its point.
     pub at_centre: bool,
-    /// Inertia of what turns with its motor, as the body measured_acceleration it (kg, kg·m²).
+    /// Inertia of what turns with its motor, as the body feels it (kg, kg·m²).
     pub rotor: f64,
 }
 

@@ -6,7 +6,7 @@ use slipfit_core::{
     pose::Pose,
     system::{
         Bodies, Reduced,
-        planar::{At, Placed as PlanarPlaced, PlanarTree, Point},
+        planar::{At, Placed as PlanarPlaced, PlanarTree},
         spatial::{
             FreeBodies, PlacedBody,
             tree::{Placed as JointedPlaced, SpatialTree},
@@ -57,8 +57,7 @@ pub(super) struct PlanarKinematics<'a, const D: usize> {
     pose: [[f64; 2]; D],
     placed: PlanarPlaced<f64, D>,
     placed_bodies: Vec<PlacedBody<f64>>,
-    /// Angles (rad) of the coordinates when they were asked for last.
-    angles: [f64; D],
+    /// Coordinates (m, rad) when they were asked for last.
     last: [f64; D],
 }
 
@@ -79,7 +78,6 @@ impl<'a, const D: usize> PlanarKinematics<'a, D> {
             pose,
             placed: tree.placed(&pose, &SVector::zeros()),
             placed_bodies: Vec::new(),
-            angles: start,
             last: start,
         }
     }
@@ -89,22 +87,20 @@ impl<const D: usize> Kinematics<[[f64; 2]; D], D> for PlanarKinematics<'_, D> {
     fn update(&mut self, pose: &[[f64; 2]; D], velocity: &SVector<f64, D>) {
         self.pose = *pose;
         self.placed = self.tree.placed(pose, velocity);
-        let (tree, placed) = (self.tree, &self.placed);
-        let body = |(centre, drawn, turn): &(Point<f64, D>, Vector2<f64>, Option<usize>)| {
-            let [place, velocity] = tree.motion_of(centre, placed);
-            let moved = place - drawn;
+        let placed = &self.placed;
+        let body = |([displacement_w, velocity_w], turn): ([Vector3<f64>; 2], Option<usize>)| {
             let axis = turn.map_or(Vector2::new(1.0, 0.0), |turn| placed.axes[turn]);
             let rotation = Vector3::z() * turn.map_or(0.0, |turn| placed.rates[turn]);
             PlacedBody {
                 to_frame: Matrix3::new(axis.x, -axis.y, 0.0, axis.y, axis.x, 0.0, 0.0, 0.0, 1.0),
-                displacement_w: Vector3::new(moved.x, moved.y, 0.0),
-                velocity_w: Vector3::new(velocity.x, velocity.y, 0.0),
+                displacement_w,
+                velocity_w,
                 rotation_b: rotation,
                 rotation_w: rotation,
             }
         };
         self.placed_bodies.clear();
-        self.placed_bodies.extend(self.bodies.bodies.iter().map(body));
+        self.placed_bodies.extend(self.bodies.moved(placed).map(body));
     }
 
     fn bodies(&self) -> &[PlacedBody<f64>] {
@@ -113,8 +109,8 @@ impl<const D: usize> Kinematics<[[f64; 2]; D], D> for PlanarKinematics<'_, D> {
 
     fn rotation(&mut self, body: usize) -> Vector3<f64> {
         let Some(turn) = self.bodies.bodies[body].2 else { return Vector3::zeros() };
-        self.angles[turn] = next_to(whole_angle(self.pose[turn]), self.angles[turn]);
-        Vector3::z() * self.angles[turn]
+        self.last[turn] = next_to(whole_angle(self.pose[turn]), self.last[turn]);
+        Vector3::z() * self.last[turn]
     }
 
     fn acceleration(&self, body: usize, of_coordinates: &SVector<f64, D>) -> Vector3<f64> {

@@ -16,7 +16,7 @@ use slipfit_desk::{
 };
 
 use super::{
-    Joint, Mechanism, Mounts, NamedDrive, RunError, SlidingData, Spring, SpringKind,
+    Mechanism, Mounts, RunError,
     bends::bends,
     element::PlanarElement,
     record::MechanismRun,
@@ -38,14 +38,13 @@ type Found = Vec<Result<MechanismRun, RunError>>;
 /// Units of `mechanism` that one thread runs in a batch: many enough that few lanes are idle at its end, few enough that all threads
 /// have work.
 pub fn batch_size(mechanism: &Mechanism) -> usize {
-    if supports_lanes(mechanism) && units::lanes(usize::MAX).is_some() { 32 } else { 1 }
+    if mechanism.planar && units::lane_count(usize::MAX).is_some() { 32 } else { 1 }
 }
 
 /// Runs `made` units, at most `lanes` at a time on one thread. The results have no motion.
 pub fn run_units(made: &[ProductionUnit], lanes: usize) -> Found {
-    let is_shared = made.first().is_some_and(|first| supports_lanes(&first.mechanism));
-    let mounts = || made.iter().map(|made| Mounts::of(&made.mechanism).ok()).collect::<Option<Vec<_>>>();
-    match units::lanes(lanes).filter(|_| is_shared).zip(mounts()) {
+    let mounts = |made: &ProductionUnit| made.mechanism.planar.then(|| Mounts::of(&made.mechanism).ok()).flatten();
+    match units::lane_count(lanes).zip(made.iter().map(mounts).collect::<Option<Vec<_>>>()) {
         None => made.iter().map(run_alone).collect(),
         Some((lanes, mounts)) => match mounts.first().map_or(0, |mounts| mounts.coordinates().len()) {
             ..=3 => in_plane::<3>(made, &mounts, lanes),
@@ -58,19 +57,6 @@ fn run_alone(ProductionUnit { mechanism, gaps }: &ProductionUnit) -> Result<Mech
     run_without_output(mechanism, gaps)
 }
 
-/// Whether units of `mechanism` can run on lanes. Mechanisms in space, with commands other than a ramp, friction other than Coulomb's,
-/// line springs or contoured walls run one by one: their laws are not compiled for lanes.
-fn supports_lanes(mechanism: &Mechanism) -> bool {
-    let by_ramp = |named: &NamedDrive| named.sampling.is_none() && named.command.is_none();
-    let by_coulomb =
-        |joint: &Joint| matches!(joint.laws.friction, SlidingData::Coulomb(_)) && joint.walls.is_parallel();
-    let by_turn = |spring: &Spring| matches!(spring.kind, SpringKind::Torsion { .. });
-    mechanism.planar
-        && mechanism.drives.iter().all(by_ramp)
-        && mechanism.joints.iter().all(by_coulomb)
-        && mechanism.springs.iter().all(by_turn)
-}
-
 fn in_plane<const D: usize>(made: &[ProductionUnit], mounts: &[Mounts], lanes: usize) -> Found
 where
     PlanarTree<f64, D>: OnLanes<D, Pose = [[f64; 2]; D], Element = PlanarElement<D>>,
@@ -78,12 +64,13 @@ where
     let unit =
         |(made, mounts): (&ProductionUnit, &Mounts)| PlanarUnit::<D>::new(&made.mechanism, mounts, &made.gaps).ok();
     let mut ready: Vec<_> = made.iter().zip(mounts).map(unit).collect();
-    // Units with another structure than the first run alone.
+    // Units with another structure than the first, or with elements that lanes do not have, run alone.
     let first = ready.iter().flatten().next().map(|first| (first.tree, first.elements.clone()));
     for ready in &mut ready {
         let is_like = |unit: &PlanarUnit<D>| {
             let first = first.as_ref().map(|(tree, elements)| (tree, &elements[..]));
-            first.is_some_and(|first| units::same_structure(first, (&unit.tree, &unit.elements)))
+            unit.elements.iter().all(PlanarElement::runs_on_lanes)
+                && first.is_some_and(|first| units::same_structure(first, (&unit.tree, &unit.elements)))
         };
         *ready = ready.take().filter(is_like);
     }
@@ -155,7 +142,9 @@ impl<P: Copy, const D: usize> UnitObserver<P, D> for UnitRun<'_, P, D> {
 mod tests {
     use super::{Found, ProductionUnit, run_alone, run_units};
     use crate::{
-        mechanism::{MechanismRun, Parameter, SlidingData},
+        mechanism::{
+            MechanismRun, Mounts, Parameter, SlidingData, Spring, SpringKind, element::PlanarElement, run::PlanarUnit,
+        },
         scene::{Override, SceneFile, shipped},
         setup::Adjustable as _,
     };
@@ -180,7 +169,7 @@ mod tests {
     }
 
     /// All that is found of units but the time that it took.
-    fn told(found: Found) -> Vec<String> {
+    fn without_time(found: Found) -> Vec<String> {
         let one = |run: MechanismRun| {
             let MechanismRun { outcomes, energy_excess, sunk, effort, .. } = run;
             format!("{outcomes:?} {energy_excess:?} {sunk:?} {effort:?}")
@@ -188,21 +177,46 @@ mod tests {
         found.into_iter().map(|run| one(run.unwrap())).collect()
     }
 
-    /// What is found of units depends neither on how many are moved at a time, nor on which are moved together.
+    /// What is found of units depends neither on how many run at a time, nor on which run together.
     fn compare(name: &str, set: &[&str]) {
         let mut made = units(name, set, 19);
         // One that is not like the others.
         made[7].mechanism.joints.iter_mut().for_each(|joint| joint.laws.friction = SlidingData::NONE);
-        let expected = told(made.iter().map(run_alone).collect());
+        assert!(run_on_lanes(&made[0]), "{name}");
+        compare_units(&made);
+    }
+
+    fn compare_units(made: &[ProductionUnit]) {
+        let expected = without_time(made.iter().map(run_alone).collect());
         for lanes in [1, 4, 8] {
-            assert_eq!(told(run_units(&made, lanes)), expected, "{name}");
-            assert_eq!(told(run_units(&made[3..6], lanes)), expected[3..6], "{name}");
+            assert_eq!(without_time(run_units(made, lanes)), expected, "{lanes}");
+            assert_eq!(without_time(run_units(&made[3..6], lanes)), expected[3..6], "{lanes}");
         }
         assert_ne!(expected[0], expected[1]);
     }
 
+    /// Whether lanes have all elements of a unit.
+    fn run_on_lanes(ProductionUnit { mechanism, gaps }: &ProductionUnit) -> bool {
+        let mounts = Mounts::of(mechanism).unwrap();
+        let unit = PlanarUnit::<6>::new(mechanism, &mounts, gaps).unwrap();
+        unit.elements.iter().all(PlanarElement::runs_on_lanes)
+    }
+
+    /// What lanes do not have is not left out.
     #[test]
-    fn units_that_are_moved_together_have_the_bits_that_they_have_alone() {
+    fn units_with_other_elements_run_one_by_one() {
+        let mut made = units("slider-crank", &["run.duration=0.1"], 6);
+        for ProductionUnit { mechanism, .. } in &mut made {
+            let kind = SpringKind::Line { ends: [[0.0; 3], [0.1, 0.1, 0.0]], free_length: 0.05 };
+            let name = "spring".to_owned();
+            mechanism.springs.push(Spring { name, between: [Some(2), None], stiffness: 50.0, damping: 0.0, kind });
+        }
+        assert!(!run_on_lanes(&made[0]));
+        compare_units(&made);
+    }
+
+    #[test]
+    fn units_that_run_together_have_the_bits_that_they_have_alone() {
         compare("slider-crank", &["run.duration=0.3"]);
         compare("four-bar", &["run.duration=0.3"]);
         compare("slider-crank-guide", &["run.duration=0.3"]);

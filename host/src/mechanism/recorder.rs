@@ -35,7 +35,7 @@ struct DriveMotion {
     speed: f64,
     /// Travel (m, rad) since the start, which need not be the drawn pose.
     travel: f64,
-    /// How much faster (m/s) the point goes where it acts.
+    /// How much faster (m/s) the point where it acts goes along the axis than the one whose speed it controls.
     point_excess: f64,
 }
 
@@ -66,7 +66,7 @@ impl Values for DriveMotion {
 pub(super) struct Output {
     /// Time (s) between two samples.
     pub every: f64,
-    /// Moments that show the motion, about.
+    /// About how many moments show the motion.
     pub moments: usize,
 }
 
@@ -95,8 +95,7 @@ pub(super) struct Recorder<'a, P, const D: usize> {
 const ABSURD: f64 = 1e5;
 
 impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
-    /// Of a run of `mechanism`, whose `bodies` start at a pose and at rates; the states of all
-    /// coordinates are kept if `keeps_states`.
+    /// A run of `mechanism` whose `bodies` start at a pose and at rates. It keeps the states of all coordinates if `keeps_states`.
     pub fn new(
         mechanism: &'a Mechanism,
         mut bodies: Box<dyn Kinematics<P, D> + 'a>,
@@ -142,7 +141,7 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
         if least_gap.is_some_and(|gap| gap < -sunk::LEAST) {
             self.depths.observe(bodies.gaps(&motion.pose, &motion.velocity));
         }
-        // Where the step began they were looked at last.
+        // The last pose of the bodies is that at the start of the step.
         for (named, knots) in mechanism.drives.iter().zip(&mut *drives) {
             let rates = accelerations.map(|[start, _]| [drive_acceleration(named, &**bodies, &start), 0.0]);
             knots.push(Knot { t, values: DriveMotion { speed: 0.0, travel: 0.0, point_excess: 0.0 }, rates });
@@ -272,7 +271,7 @@ impl<'a, P: Copy, const D: usize> Recorder<'a, P, D> {
         Effort::new(self.times.clone(), values, time_constant)
     }
 
-    /// Tells how everything moves up to the `end` (s), by the states at the ends of steps and what the drives give.
+    /// Adds samples and moments of the motion up to its `end` (s) to `run`, from the states at the ends of steps and the efforts of the drives.
     fn write_output(
         &self,
         knots: &[Knot<State<D>>],

@@ -96,15 +96,16 @@ fn run_by(mechanism: &Mechanism, gaps: &[f64], by: By) -> Result<MechanismRun, R
     }
 }
 
-/// How a unit is computed and told of.
+/// Steps and output of a run.
 #[derive(Clone, Copy)]
 struct By {
     /// A controller's steps; the desk's, if there are none.
     controller: Option<ControllerSpec>,
+    /// Samples and moments of the motion; without them outcomes alone.
     output: Option<Output>,
 }
 
-/// One unit in a plane, ready to be moved.
+/// One unit in a plane, ready to be simulated.
 pub(super) struct PlanarUnit<const D: usize> {
     pub tree: PlanarTree<f64, D>,
     pub elements: Vec<PlanarElement<D>>,
@@ -124,7 +125,7 @@ impl<const D: usize> PlanarUnit<D> {
         Ok(Self { tree, elements, limits, start: (tree.pose(places, half_angle), rates.into()), places })
     }
 
-    /// How it is told of.
+    /// Its kinematics.
     pub fn kinematics<'a>(&'a self, mechanism: &Mechanism, mounts: &Mounts) -> PlanarKinematics<'a, D> {
         PlanarKinematics::new(mechanism, mounts, &self.tree, &self.elements, self.places)
     }

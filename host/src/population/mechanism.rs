@@ -97,7 +97,8 @@ fn together(driven: &ByDrive, drawn: &Drawn, asked: &[usize]) -> Result<Vec<(Uni
         if interrupt::requested() {
             return Err(SimulateError::Interrupted);
         }
-        found.push(match if fits(i) { runs.next() } else { None } {
+        let run = if fits(i) { runs.next() } else { None };
+        found.push(match run {
             None => (Fault::Unassembled.outcome(), 0.0),
             Some(run) => match run.map_err(SimulateError::from).and_then(|run| judged(driven, drawn, *i, &run)) {
                 Ok((outcome, at_desk)) => (told(&outcome, at_desk), outcome.share),

@@ -341,6 +341,22 @@ mod tests {
         assert_eq!(lift.least_mass(), 0.4);
     }
 
+    /// Desks have trees with room for more coordinates than a scene has.
+    #[test]
+    fn coordinates_that_move_nothing_stand_still() {
+        let Linkage { coordinates, bodies, .. } = linkage();
+        let tree = PlanarTree::new(coordinates, &bodies[4..], Vector2::new(1.0, -9.81)).unwrap();
+        let is_moved = |k: usize| bodies[4..].iter().any(|body| body.centre.carrier.moves[k]);
+        let pose = tree.pose([0.3, -0.4, 0.05, 0.02, 0.1, -0.04], |x| [libm::cos(x / 2.0), libm::sin(x / 2.0)]);
+        let rates = SVector::from_fn(|k, _| if is_moved(k) { 0.7 } else { 0.0 });
+        let (mass, force) = tree.mass_and_own_force(&tree.placed(&pose, &rates));
+        let acceleration = tree.velocity(&mass, &force);
+        assert!((0..6).any(is_moved) && !(0..6).all(is_moved));
+        for k in 0..6 {
+            assert_eq!(acceleration[k] != 0.0, is_moved(k), "{k}: {acceleration}");
+        }
+    }
+
     /// What a planar body's mass does, by its definition: m·gᵀg and m·g·(gravity − J̇·V), J̇·V by a difference along the motion.
     #[test]
     fn moments_add_up_to_what_body_by_body_does() {

@@ -1,4 +1,4 @@
-//! Units on the lanes of a register: each with a time and a step of its own.
+//! Units on the lanes of a register, each with its own time and step length.
 
 use pulp::Simd;
 use slipfit_core::{

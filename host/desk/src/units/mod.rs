@@ -26,7 +26,7 @@ use crate::{
     error_control::STEPS_PER_LOOK,
 };
 
-/// What `T` is of such numbers.
+/// `T` in numbers of several units.
 type WideOf<V, T> = <T as Cast>::Of<Wide<V>>;
 
 /// The mechanisms of some units.
@@ -75,7 +75,7 @@ where
     (bodies.cast(&mut next), elements.iter().map(|element| element.cast(&mut next)).collect())
 }
 
-/// Moves the `units`, which are alike. That the machine has them is what `_instructions` prove.
+/// Integrates `units` of the same structure. The `_instructions` prove that the machine has them.
 #[inline(always)]
 fn integrate<V: Simd, B, E, const D: usize>(_instructions: V, units: &mut [Unit<B, E, D>])
 where
@@ -117,8 +117,8 @@ where
     }
 }
 
-/// How many units of a mechanism are moved at a time, at most `most`; none where the machine has no registers for several.
-pub fn lanes(most: usize) -> Option<usize> {
+/// How many units of a mechanism can be integrated at a time, at most `most`; none where the machine has no registers for several.
+pub fn lane_count(most: usize) -> Option<usize> {
     #[cfg(target_arch = "x86_64")]
     {
         if most >= 8 && pulp::x86::V4::try_new().is_some() {
@@ -136,11 +136,12 @@ pub trait OnLanes<const D: usize>: Bodies<f64, D> + Sized {
     /// What acts on them.
     type Element;
 
-    /// Moves `units` that are [alike](same_structure), as many at a time as there are [`lanes`].
+    /// Integrates `units` of the [same structure](same_structure), whose elements [run on lanes](PlanarElement::runs_on_lanes), as many
+    /// at a time as [`lane_count`] says.
     fn integrate_on_lanes(lanes: usize, units: &mut [Unit<Self, Self::Element, D>]);
 }
 
-/// Units to be moved by wide instructions.
+/// Units to be integrated by wide instructions.
 struct Work<'w, 'a, B: Bodies<f64, D>, E, const D: usize> {
     units: &'w mut [Unit<'a, B, E, D>],
 }

@@ -29,7 +29,8 @@ pub struct Unit<'a, B: Bodies<f64, D>, E, const D: usize> {
 
 /// Observes the motion of a unit.
 pub trait UnitObserver<P, const D: usize> {
-    /// Called at the start and at the end of every step, like [`See`](crate::plant::See).
+    /// Called at the start and at the end of every step with the time `t` (s), the motion, the accelerations (m/s², rad/s²) at both ends of the
+    /// step, and the least gap (m) of a contact, infinite without contacts; says whether to go on.
     fn observe(
         &mut self,
         t: f64,

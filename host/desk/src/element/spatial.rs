@@ -2,6 +2,7 @@
 
 use nalgebra::Matrix3;
 use slipfit_core::{
+    Scalar,
     mechanism::Way,
     system::{
         Assembly, Bodies, Element, Elements,
@@ -15,7 +16,6 @@ use crate::{
     closing::Approach,
     drive::AnyDrive,
     laws::{AnyNormal, AnySliding},
-    real::Real,
 };
 
 /// A wall with a contour and any laws.
@@ -79,7 +79,9 @@ impl<const N: usize, const D: usize> HasContacts<f64, FreeBodies<f64, N, D>, D> 
     }
 }
 
-impl<S: Real, const N: usize, const D: usize> HasContacts<S, FreeBodies<S, N, D>, D> for SpatialContact<S> {
+impl<S: Scalar + PartialOrd, const N: usize, const D: usize> HasContacts<S, FreeBodies<S, N, D>, D>
+    for SpatialContact<S>
+{
     #[inline(always)]
     fn approach(&self, at: Free<S, N, D>, see: &mut impl FnMut(Approach<S>)) {
         match self {
@@ -90,7 +92,7 @@ impl<S: Real, const N: usize, const D: usize> HasContacts<S, FreeBodies<S, N, D>
     }
 }
 
-impl<S: Real, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialContact<S> {
+impl<S: Scalar + PartialOrd, const N: usize, const D: usize> Elements<S, FreeBodies<S, N, D>, D> for SpatialContact<S> {
     type Internal = ();
 
     const STICKS: bool = false;
