@@ -51,7 +51,7 @@ pub struct MechanismRun {
     pub error: f64,
     /// Steps.
     pub effort: error_control::Effort,
-    /// Time that the integration alone took.
+    /// Time of the integration, with what is recorded after each step.
     pub integration: Duration,
 }
 
