@@ -256,6 +256,7 @@ fn refuses_what_it_cannot_watch() {
         force: channel.clone(),
         velocity: channel,
         verdicts: vec![MotionVerdict::Runs; 3],
+        production: None,
     };
     let over_position = encode(&over_position).unwrap();
     let over_position = Table::open(&over_position).unwrap();

@@ -8,7 +8,7 @@
 //!
 //! Where to look: [`law`] holds one force law a file, [`slide`] the mechanism of the paper, [`integrator`] the
 //! fixed-step schemes, [`kernel`] what a controller calls once a step, [`table`] the flash table it may look up instead,
-//! [`monitor`] what tells a tight or jammed drive from a free one.
+//! [`monitor`] what tells a tight or jammed drive from a free one, [`production`] what a controller knows of its own unit.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -30,6 +30,7 @@ pub mod monitor;
 pub mod pose;
 pub mod power;
 mod product;
+pub mod production;
 #[cfg(feature = "sampling")]
 pub mod sampling;
 mod scalar;

@@ -26,6 +26,9 @@ pub const SLIPFIT_JAM: u32 = 3;
 /// then.
 pub const SLIPFIT_NO_DATA: u32 = 4;
 
+/// The motion has come to the end of a table of a production, beyond which nothing is watched.
+pub const SLIPFIT_ENDED: u32 = 5;
+
 /// As C has it.
 pub(crate) fn code(verdict: Verdict) -> u32 {
     match verdict {
@@ -34,6 +37,7 @@ pub(crate) fn code(verdict: Verdict) -> u32 {
         Verdict::Tight => SLIPFIT_TIGHT,
         Verdict::Jam => SLIPFIT_JAM,
         Verdict::NoData => SLIPFIT_NO_DATA,
+        Verdict::Ended => SLIPFIT_ENDED,
     }
 }
 

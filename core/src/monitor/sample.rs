@@ -52,4 +52,6 @@ pub enum Verdict {
     /// For [`Limits::hold`](super::Limits::hold) no sample was of use: a number was missing, as of a dead sensor, or the table has
     /// no force then.
     NoData,
+    /// The motion has come to the end of the table of a production, beyond which nothing is watched.
+    Ended,
 }

@@ -13,11 +13,13 @@ pub enum AxisKind {
     Position = 3,
     /// Commanded speed (m/s): the one that the drive's ramp leads to, not the slide's own.
     Velocity = 4,
+    /// Rows of a production, see [`production`](crate::production): what varies is the number of the row.
+    Row = 5,
 }
 
 impl AxisKind {
     /// All kinds.
-    pub const ALL: [Self; 4] = [Self::Level, Self::Time, Self::Position, Self::Velocity];
+    pub const ALL: [Self; 5] = [Self::Level, Self::Time, Self::Position, Self::Velocity, Self::Row];
 
     /// The kind stored as `code`.
     pub fn of(code: u8) -> Option<Self> {
@@ -31,13 +33,14 @@ impl AxisKind {
             Self::Time => "time",
             Self::Position => "position",
             Self::Velocity => "speed",
+            Self::Row => "row",
         }
     }
 
     /// The quantity's unit.
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Level => "1",
+            Self::Level | Self::Row => "1",
             Self::Time => "s",
             Self::Position => "m",
             Self::Velocity => "m/s",

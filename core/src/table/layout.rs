@@ -50,6 +50,11 @@ pub const CHANNEL_RMS_AT: usize = 8;
 
 /// Size of the header, and offset of the data.
 pub const HEADER_SIZE: usize = CHANNELS_AT + CHANNELS * CHANNEL_SIZE;
+/// Size of the record of a production, before the checksum of a table of one.
+pub const PRODUCTION_SIZE: usize = 4 * PRODUCTION_NUMBERS;
+/// Numbers in that record, f32 each.
+pub const PRODUCTION_NUMBERS: usize = 51;
+
 /// Size of the checksum at the end.
 pub const CHECKSUM_SIZE: usize = 4;
 

@@ -22,7 +22,7 @@
 //!
 //! | in an axis | type | field |
 //! |---|---|---|
-//! | 0 | u8 | what varies: 1 tolerance level n, 2 time t (s), 3 position z (m), 4 commanded speed (m/s) |
+//! | 0 | u8 | what varies: 1 tolerance level n, 2 time t (s), 3 position z (m), 4 commanded speed (m/s), 5 row of a production |
 //! | 1 | `[u8; 3]` | zero |
 //! | 4 | u32 | number of nodes, 2 to 2¹⁶ |
 //! | 8 | f32 | first node |
@@ -38,6 +38,9 @@
 //! the third, which is the fastest. Its byte is twice a [`MotionVerdict`], plus 1 if the motion at the next node of the first
 //! axis has another one. Where the verdicts of neighbours differ, values between them are those of no unit: one runs and the
 //! other jams, and no unit does half of each. [`Lookup::mixed`] says so.
+//!
+//! A table whose first axis is rows of a production has a record of [`layout::PRODUCTION_SIZE`] bytes between the verdicts and the
+//! checksum, see [`production`](crate::production).
 //!
 //! The node behind the last one is read with the last one, and weighs nothing.
 //!
@@ -94,6 +97,8 @@ pub struct Table<'a, const N: usize = 2, V = AnyNodes<'a>> {
     nodes: V,
     /// A [`MotionVerdict`] each.
     verdicts: &'a [u8],
+    /// The record of a production; empty without one.
+    production: &'a [u8],
 }
 
 /// What a table says about one point.
@@ -144,9 +149,13 @@ impl<'a, const N: usize> Table<'a, N> {
         let size = count.checked_add(1).and_then(|count| count.checked_mul(CHANNELS * header.encoding.size()));
         let (nodes, rest) = size.and_then(|size| data.split_at_checked(size)).ok_or(TableError::Header("length"))?;
         let (nodes, ranges) = AnyNodes::new(header.encoding, &header.channels, nodes)?;
+        let record = if axes[0].kind() == AxisKind::Row { layout::PRODUCTION_SIZE } else { 0 };
+        let verdict_bytes = rest.len().checked_sub(record).ok_or(TableError::Header("length"))?;
+        let (rest, production) = rest.split_at_checked(verdict_bytes).ok_or(TableError::Header("length"))?;
         let speeds = axes.get(2).map_or(1, Axis::count);
         let verdicts = verdict::checked(rest, axes[0].count().saturating_mul(speeds), speeds)?;
-        Ok(Self { bytes, scene_hash: header.scene_hash, axes, records: header.channels, ranges, nodes, verdicts })
+        let (scene_hash, records) = (header.scene_hash, header.channels);
+        Ok(Self { bytes, scene_hash, axes, records, ranges, nodes, verdicts, production })
     }
 
     /// This table, if its values are f32.
@@ -166,8 +175,8 @@ impl<'a, const N: usize> Table<'a, N> {
     }
 
     fn with<V>(self, nodes: V) -> Table<'a, N, V> {
-        let Self { bytes, scene_hash, axes, records, ranges, verdicts, .. } = self;
-        Table { bytes, scene_hash, axes, records, ranges, nodes, verdicts }
+        let Self { bytes, scene_hash, axes, records, ranges, verdicts, production, .. } = self;
+        Table { bytes, scene_hash, axes, records, ranges, nodes, verdicts, production }
     }
 
     /// How values are stored.
@@ -265,6 +274,11 @@ impl<const N: usize, V: Nodes> Table<'_, N, V> {
         MotionVerdict::of(verdict::code(*self.verdicts.get(place?)?))
     }
 
+    /// The record of a production; empty in other tables.
+    pub(crate) fn production(&self) -> &[u8] {
+        self.production
+    }
+
     /// Hash of the scene and laws the table was made for.
     pub fn scene_hash(&self) -> u64 {
         self.scene_hash
@@ -277,6 +291,18 @@ impl<const N: usize, V: Nodes> Table<'_, N, V> {
 }
 
 impl<V: Nodes> Table<'_, 2, V> {
+    /// Force and velocity (N, m/s) of the `row`-th node of the first axis at `place` on the second.
+    #[inline(always)]
+    pub(crate) fn of_row(&self, row: usize, place: &Place) -> Values {
+        self.nodes.between(place.node + row * self.axes[1].count(), place.fraction)
+    }
+
+    /// Whether `force` (N) is within the range that forces had when the table was opened.
+    #[inline(always)]
+    pub(crate) fn is_in_range(&self, force: f32) -> bool {
+        self.ranges[0].contains(force)
+    }
+
     /// The force (N) at every node of the first axis, at `x` on the second. None outside of it, or if one of them lies outside of
     /// the range of all, see [`Lookup::damaged`].
     #[inline]

@@ -1,5 +1,6 @@
 //! `slipfit table`: the flash table.
 
+mod production;
 mod words;
 
 use std::path::{Path, PathBuf};
@@ -81,6 +82,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     #[command(flatten)]
+    production: production::Arguments,
+    #[command(flatten)]
     threads: ThreadArguments,
 }
 
@@ -134,7 +137,7 @@ impl AxisReport {
         let unit = match kind {
             AxisKind::Position => drive.choose(kind.unit(), "rad"),
             AxisKind::Velocity => drive.choose(kind.unit(), "rad/s"),
-            AxisKind::Level | AxisKind::Time => kind.unit(),
+            AxisKind::Level | AxisKind::Time | AxisKind::Row => kind.unit(),
         };
         Self { kind: kind.name(), unit, first, step, count }
     }
@@ -142,6 +145,10 @@ impl AxisReport {
 
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
+        if self.production.production {
+            return self.of_production();
+        }
+        self.production.refuse()?;
         let overrides: Vec<_> = self.levels.overrides().into_iter().collect();
         let is_stroke = self.over != Over::Time;
         let (moving, product) = self.scene.load_moving_with_product(&overrides)?;

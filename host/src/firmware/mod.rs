@@ -7,3 +7,4 @@ pub mod force_table;
 mod guard;
 pub mod kernel_crate;
 pub mod kernel_source;
+pub mod production_table;

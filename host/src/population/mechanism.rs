@@ -5,6 +5,7 @@ use slipfit_system::{interrupt, parallel};
 use super::{
     Unit, UnitOutcome,
     production::Drawn,
+    strokes::Stroke,
     subject::Subject,
     unit::{Decisive, Fault, is_near_a_limit},
 };
@@ -13,7 +14,9 @@ use crate::{
         outcome::{Outcome, Verdict},
         simulate::SimulateError,
     },
-    mechanism::{ByDrive, ENERGY, Mechanism, MechanismRun, ProductionUnit, batch_size, confirmed, run, run_units},
+    mechanism::{
+        ByDrive, ENERGY, Mechanism, MechanismRun, Parameter, ProductionUnit, batch_size, confirmed, run, run_units,
+    },
     setup::{Adjustable, RunSpec},
 };
 
@@ -42,6 +45,13 @@ impl Subject for ByDrive<'_> {
             Ok(Decisive { speed, force: outcome.peak_force })
         };
         Ok(units(self, drawn, asked)?.into_iter().map(decisive).collect())
+    }
+
+    fn stroke(&self, drawn: &Drawn, i: usize, friction: f64, every: f64) -> Result<Stroke, SimulateError> {
+        let ProductionUnit { mut mechanism, gaps } = made(self, drawn, i);
+        Parameter::Friction.change(&mut mechanism, &mut |coefficient| coefficient * (1.0 + friction));
+        let mut run = run(&mechanism, &gaps, every)?;
+        Ok(Stroke { outcome: run.outcomes[self.index()], trajectory: run.trajectories.swap_remove(self.index()) })
     }
 
     fn trouble(&self, drawn: &Drawn, i: usize) -> Option<String> {

@@ -8,6 +8,7 @@ use slipfit_desk::population::{Course, Figures, simulate as simulate_lanes};
 
 use super::{
     production::Drawn,
+    strokes::{self, Stroke},
     subject::Subject,
     unit::{Decisive, Fault, Unit, UnitOutcome, is_near_a_limit},
 };
@@ -16,10 +17,10 @@ use crate::{
         desk,
         laws::{AnyElastic, AnySlide},
         outcome::{Moment, Verdict, between_verdicts},
-        simulate::{Settings, SimulateError, simulate},
+        simulate::{Run, Settings, SimulateError, simulate},
     },
     mechanism::level_of,
-    setup::{Adjustable, Scene},
+    setup::{Adjustable, Scene, SlideParameter},
 };
 
 /// Error of the drive force that a step may make, as a share of the drive's greatest force. Single precision knows the
@@ -36,6 +37,14 @@ impl Subject for Scene {
 
     fn decisive(&self, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Result<Decisive, Fault>>, SimulateError> {
         decisive(self, drawn, asked)
+    }
+
+    fn stroke(&self, drawn: &Drawn, i: usize, friction: f64, every: f64) -> Result<Stroke, SimulateError> {
+        let mut own = scene_of(self, drawn, i);
+        SlideParameter::Friction.change(&mut own, &mut |coefficient| coefficient * (1.0 + friction));
+        let settings = Settings::desk(&own, every).to(desk::tolerance_of(&own, own.run.error.max(strokes::ERROR)));
+        let Run { outcome, trajectory, .. } = simulate(&own, &drawn.gaps[i], &settings)?;
+        Ok(Stroke { outcome, trajectory })
     }
 
     fn trouble(&self, drawn: &Drawn, i: usize) -> Option<String> {

@@ -2,6 +2,7 @@
 
 use super::{
     production::Drawn,
+    strokes::Stroke,
     unit::{Decisive, Fault, Unit},
 };
 use crate::dynamics::{driven::Driven, simulate::SimulateError};
@@ -22,6 +23,13 @@ pub trait Subject: Driven {
     /// # Errors
     /// [`SimulateError::Interrupted`].
     fn decisive(&self, drawn: &Drawn, asked: &[usize]) -> Result<Vec<Result<Decisive, Fault>>, SimulateError>;
+
+    /// One stroke of unit `i` of those `drawn`, sampled every `every` (s), with a friction that differs from the unit's own by the
+    /// share `friction`.
+    ///
+    /// # Errors
+    /// See [`SimulateError`].
+    fn stroke(&self, drawn: &Drawn, i: usize, friction: f64, every: f64) -> Result<Stroke, SimulateError>;
 
     /// Why unit `i` of those `drawn` has no run; `None` if it has one.
     fn trouble(&self, drawn: &Drawn, i: usize) -> Option<String>;

@@ -59,6 +59,7 @@ pub fn describe(kind: DriveKind, table: &ForceTable) -> String {
             AxisKind::Time => "instants",
             AxisKind::Position => "positions",
             AxisKind::Velocity => "speeds",
+            AxisKind::Row => "rows",
         };
         format!("{} {what}", axis.count)
     };

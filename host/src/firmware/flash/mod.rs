@@ -4,15 +4,18 @@ pub mod export;
 #[cfg(test)]
 mod tests;
 
-use slipfit_core::table::{
-    Axis, AxisKind, ChannelKind, Encoding, MotionVerdict, TableError,
-    layout::{
-        AXES_AT, AXES_LEAST, AXES_MOST, AXIS_COUNT_AT, AXIS_FIRST_AT, AXIS_KIND_AT, AXIS_NODES_AT, AXIS_SIZE,
-        AXIS_STEP_AT, CHANNEL_RMS_AT, CHANNEL_SCALE_AT, CHANNEL_SIZE, CHANNEL_WORST_AT, CHANNELS, CHANNELS_AT,
-        CHECKSUM_SIZE, ENCODING_AT, HEADER_SIZE, I16_MOST, LENGTH_AT, MAGIC, MAGIC_AT, SCENE_HASH_AT, VALUE_MOST,
-        VERSION, VERSION_AT, checksum,
+use slipfit_core::{
+    production::Record,
+    table::{
+        Axis, AxisKind, ChannelKind, Encoding, MotionVerdict, TableError,
+        layout::{
+            AXES_AT, AXES_LEAST, AXES_MOST, AXIS_COUNT_AT, AXIS_FIRST_AT, AXIS_KIND_AT, AXIS_NODES_AT, AXIS_SIZE,
+            AXIS_STEP_AT, CHANNEL_RMS_AT, CHANNEL_SCALE_AT, CHANNEL_SIZE, CHANNEL_WORST_AT, CHANNELS, CHANNELS_AT,
+            CHECKSUM_SIZE, ENCODING_AT, HEADER_SIZE, I16_MOST, LENGTH_AT, MAGIC, MAGIC_AT, PRODUCTION_SIZE,
+            SCENE_HASH_AT, VALUE_MOST, VERSION, VERSION_AT, checksum,
+        },
+        motions, verdict_bytes,
     },
-    motions, verdict_bytes,
 };
 
 /// Size of the TABLE region of `memory.x` (bytes): the longest table there can be.
@@ -36,6 +39,8 @@ pub struct TableSpec {
     pub velocity: ChannelSpec,
     /// The verdict on every motion: one for each node of all axes but the second, the last fastest.
     pub verdicts: Vec<MotionVerdict>,
+    /// How a production was calibrated, if its rows are the first axis.
+    pub production: Option<Record>,
 }
 
 /// An axis of equidistant nodes, in the unit of its kind. [`Axis::node`] says where f32 puts them.
@@ -115,6 +120,12 @@ pub enum FlashError {
         /// The value (N or m/s).
         value: f32,
     },
+    /// A production whose first axis is no rows, or rows without one.
+    #[error("a record of a production goes with an axis of rows, and the other way round")]
+    Production,
+    /// A record of a production that is out of bounds.
+    #[error("{0}")]
+    Record(TableError),
     /// An interpolation error that is negative or not finite, or a mean above the worst.
     #[error("the interpolation error of {} is {worst} at worst and {rms} in the mean", channel.name())]
     InterpolationError {
@@ -187,7 +198,13 @@ pub fn encode(spec: &TableSpec) -> Result<Vec<u8>, FlashError> {
     if spec.verdicts.len() != expected {
         return Err(FlashError::Verdicts { found: spec.verdicts.len(), expected });
     }
-    let length = length(spec.axes.iter().map(|axis| axis.count), spec.encoding);
+    let is_of_rows = spec.axes.first().is_some_and(|axis| axis.kind == AxisKind::Row);
+    if is_of_rows != spec.production.is_some() {
+        return Err(FlashError::Production);
+    }
+    let record = spec.production.map(Record::checked).transpose().map_err(FlashError::Record)?;
+    let record_size = record.map_or(0, |_| PRODUCTION_SIZE);
+    let length = length(spec.axes.iter().map(|axis| axis.count), spec.encoding) + record_size;
     if length > TABLE_REGION {
         return Err(FlashError::TooLarge { bytes: length, region: TABLE_REGION });
     }
@@ -204,7 +221,8 @@ pub fn encode(spec: &TableSpec) -> Result<Vec<u8>, FlashError> {
     }
     bytes.resize(bytes.len() + CHANNELS * spec.encoding.size(), 0);
     bytes.extend(verdict_bytes(&spec.verdicts, spec.axes.get(2).map_or(1, |axis| axis.count)));
-    bytes.resize(length - CHECKSUM_SIZE, 0);
+    bytes.resize(length - CHECKSUM_SIZE - record_size, 0);
+    bytes.extend(record.iter().flat_map(Record::numbers).flat_map(f32::to_le_bytes));
     let sum = checksum(&bytes);
     bytes.extend(sum.to_le_bytes());
     Ok(bytes)

@@ -29,6 +29,7 @@ fn grid(axes: Vec<AxisSpec>, encoding: Encoding) -> TableSpec {
         force: channel(count, 4.0),
         velocity: channel(count, 0.1),
         verdicts,
+        production: None,
     }
 }
 
@@ -323,6 +324,7 @@ fn any_spec(axes: usize) -> impl Strategy<Value = TableSpec> {
         let motions = motions(axes.iter().map(|(.., count)| *count)).unwrap();
         (values(), values()).prop_map(move |(force, velocity)| TableSpec {
             verdicts: vec![MotionVerdict::Runs; motions],
+            production: None,
             scene_hash: 1,
             axes: axes
                 .iter()

@@ -137,7 +137,7 @@ fn spec(
     verdicts: Vec<MotionVerdict>,
 ) -> TableSpec {
     let [force, velocity] = values.map(|values| ChannelSpec { values, worst_error: 0.0, rms_error: 0.0 });
-    TableSpec { scene_hash, axes, encoding, force, velocity, verdicts }
+    TableSpec { scene_hash, axes, encoding, force, velocity, verdicts, production: None }
 }
 
 /// Whether a table with nodes on `axes` fits its region of flash, found out before any run.

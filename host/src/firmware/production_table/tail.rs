@@ -1,0 +1,53 @@
+//! Limits that are seldom exceeded, from a sample: the tail as a generalised Pareto distribution by probability-weighted moments
+//! (Hosking, Wallis, "Parameter and quantile estimation for the generalized Pareto distribution", Technometrics 29, 1987).
+
+/// Share of the sample that the tail is fitted to.
+const TAIL: f64 = 0.05;
+
+/// The values that shares `rates` of what `all` is a sample of exceed; each less than a twentieth.
+pub fn limits<const N: usize>(mut all: Vec<f64>, rates: [f64; N]) -> [f64; N] {
+    all.sort_by(f64::total_cmp);
+    let beyond = ((all.len() as f64 * TAIL) as usize).max(1).min(all.len().saturating_sub(1));
+    let Some(threshold) = all.get(all.len().saturating_sub(beyond + 1)).copied() else { return [0.0; N] };
+    let excesses: Vec<f64> = all[all.len() - beyond..].iter().map(|x| x - threshold).collect();
+    let count = excesses.len() as f64;
+    let mean = excesses.iter().sum::<f64>() / count;
+    // Weighted with the share that exceeds each.
+    let weighted = excesses.iter().enumerate().map(|(i, x)| x * (1.0 - (i as f64 + 0.65) / count)).sum::<f64>() / count;
+    let share = beyond as f64 / all.len() as f64;
+    let difference = mean - 2.0 * weighted;
+    if !(mean > 0.0 && difference > 0.0) {
+        return [threshold + excesses.last().copied().unwrap_or(0.0); N];
+    }
+    let (shape, scale) = (2.0 - mean / difference, 2.0 * mean * weighted / difference);
+    rates.map(|rate| {
+        let log = libm::log(share / rate);
+        let factor = if shape.abs() < 1e-9 { log } else { libm::expm1(shape * log) / shape };
+        threshold + scale * factor
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::limits;
+
+    /// Of distributions whose quantiles are known: exponential, uniform, Pareto with shape ¼, each by its own quantiles.
+    #[test]
+    fn tails_of_known_distributions_are_continued() {
+        let count = 20_000;
+        let shares = || (0..count).map(|i| (f64::from(i) + 0.5) / f64::from(count));
+        let rates = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+        let known: [(&str, fn(f64) -> f64); 3] = [
+            ("exponential", |exceeding| -libm::log(exceeding)),
+            ("uniform", |exceeding| 1.0 - exceeding),
+            ("pareto", |exceeding| 4.0 * (libm::pow(exceeding, -0.25) - 1.0)),
+        ];
+        for (name, quantile) in known {
+            let found = limits(shares().map(quantile).collect(), rates);
+            for (found, rate) in found.into_iter().zip(rates) {
+                let expected = quantile(rate);
+                assert!((found / expected - 1.0).abs() < 0.03, "{name} {rate}: {found} {expected}");
+            }
+        }
+    }
+}
