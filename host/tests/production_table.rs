@@ -143,6 +143,8 @@ struct Taught {
     squares: [f64; 3],
     count: f64,
     alarms: usize,
+    /// Those of the friction.
+    of_friction: usize,
     strokes: usize,
 }
 
@@ -175,6 +177,7 @@ impl Judge<'_> {
                 let end = self.seen(&watch, &mut unit, stroke, noise, &mut |_| {});
                 found.strokes += 1;
                 found.alarms += usize::from(end.verdict != Said::Free);
+                found.of_friction += usize::from(end.rise > 3.0 * end.deviation && end.verdict == Said::Tight);
             }
             found
         });
@@ -183,6 +186,7 @@ impl Judge<'_> {
             (0..3).for_each(|k| sum.squares[k] += one.squares[k]);
             sum.count += one.count;
             sum.alarms += one.alarms;
+            sum.of_friction += one.of_friction;
             sum.strokes += one.strokes;
         }
         sum

@@ -56,6 +56,12 @@
 // then.
 #define SLIPFIT_NO_DATA 4
 
+// The motion has come to the end of a table of a production, beyond which nothing is watched.
+#define SLIPFIT_ENDED 5
+
+// Size of a saved unit (bytes).
+#define SLIPFIT_UNIT_SIZE 112
+
 // 0 if a function did what it says, or why it did nothing.
 typedef int32_t slipfit_status;
 
@@ -289,6 +295,71 @@ typedef struct slipfit_jam_watch {
   uint64_t words[8];
 } slipfit_jam_watch;
 
+// Memory of a watch by a production and of its stroke; opaque. The table itself stays where it is.
+typedef struct slipfit_watch {
+  uint64_t words[96];
+} slipfit_watch;
+
+// Memory of what is known of a unit; opaque.
+typedef struct slipfit_unit {
+  uint64_t words[16];
+} slipfit_unit;
+
+// What the drive measures once a period, for a watch by a production. What it fails to measure is NAN.
+typedef struct slipfit_production_sample {
+  // Time since the motion's start (s), or position (m), as the table has it.
+  float at;
+  // The drive's force (N).
+  float force;
+  // The speed along the drive (m/s).
+  float speed;
+  // The commanded speed (m/s).
+  float command;
+} slipfit_production_sample;
+
+// What a watch by a production says of a sample.
+typedef struct slipfit_production_report {
+  // SLIPFIT_BLIND, SLIPFIT_FREE, SLIPFIT_TIGHT, SLIPFIT_JAM, SLIPFIT_NO_DATA or SLIPFIT_ENDED.
+  uint32_t verdict;
+  // The force (N) that is expected of this unit now, with what this stroke has told of its friction so far.
+  float expected;
+  // The force (N) that was expected before the stroke: before the unit is taught that of the mean.
+  float own;
+  // The speed (m/s) that is expected.
+  float speed;
+  // By how much (N) the smoothed force exceeds the expected one, in the direction of the command.
+  float excess;
+  // By how much (N) it may.
+  float limit;
+} slipfit_production_report;
+
+// What a whole stroke says.
+typedef struct slipfit_stroke_end {
+  // SLIPFIT_JAM or SLIPFIT_TIGHT if a sample said so, SLIPFIT_TIGHT if the friction has risen, SLIPFIT_NO_DATA if pieces of the stroke are
+  // missing, else SLIPFIT_FREE.
+  uint32_t verdict;
+  // 1 if the unit was learned from it, 0 if not.
+  uint32_t learned;
+  // By what share the friction is above that of the unit's first strokes; 0 before the fourth.
+  float rise;
+  // The standard deviation of that; infinite before the fourth.
+  float deviation;
+} slipfit_stroke_end;
+
+// How the friction of a unit changes over its strokes.
+typedef struct slipfit_wear {
+  // Rise of the friction now, as a share of that of the first strokes.
+  float rise;
+  // Rise a stroke.
+  float slope;
+  // Standard deviation of the slope.
+  float deviation;
+  // Strokes until one unit in a hundred would not complete its stroke, by the slope; infinite where it does not rise.
+  float strokes_left;
+  // The same by the steepest slope that is as likely as 1 in 20.
+  float strokes_left_least;
+} slipfit_wear;
+
 // Done.
 #define SLIPFIT_OK 0
 
@@ -361,6 +432,18 @@ typedef struct slipfit_jam_watch {
 
 // The table has no unit of the level: those on either side end differently, one runs and one jams, say.
 #define SLIPFIT_MONITOR_MIXED 35
+
+// No unit was saved there, or by another version.
+#define SLIPFIT_UNIT_MAGIC 40
+
+// The saved unit is damaged.
+#define SLIPFIT_UNIT_CHECKSUM 41
+
+// The unit was saved for another scene or other laws.
+#define SLIPFIT_UNIT_SCENE 42
+
+// Too few strokes to say.
+#define SLIPFIT_UNIT_STROKES 43
 
 #ifdef __cplusplus
 extern "C" {
@@ -605,6 +688,76 @@ slipfit_status slipfit_jam_watch_step(struct slipfit_jam_watch *storage,
 // # Safety
 // As for slipfit_jam_watch_init; the memory has been written before.
 slipfit_status slipfit_jam_watch_restart(struct slipfit_jam_watch *storage);
+
+// Checks the table of a production at `region` completely and makes a watch by it in `*storage`, at the start of a stroke. The table must be over
+// `over`, SLIPFIT_AXIS_TIME or SLIPFIT_AXIS_POSITION, and made for `scene_hash`. Of the strokes of units that complete them the watch gives
+// a false alarm in a share `rate`, 1e-6 to 1e-2.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; `length` bytes are at `region` and stay
+// as they are for as long as the watch is used; nobody else uses `*storage` meanwhile.
+slipfit_status slipfit_watch_init(struct slipfit_watch *storage,
+                                  const uint8_t *region,
+                                  uint32_t length,
+                                  uint32_t over,
+                                  uint64_t scene_hash,
+                                  float rate);
+
+// Starts another stroke.
+//
+// # Safety
+// As for slipfit_watch_init; the watch has been written before.
+slipfit_status slipfit_watch_start(struct slipfit_watch *storage);
+
+// What a sample says of the stroke of `*unit`, after those before it. SLIPFIT_TABLE_VALUE if the table has changed since it was opened; the
+// report is written then, too.
+//
+// # Safety
+// As for slipfit_watch_start; the unit has been written before; nobody else uses `*report` meanwhile.
+slipfit_status slipfit_watch_step(struct slipfit_watch *storage,
+                                  const struct slipfit_unit *unit,
+                                  const struct slipfit_production_sample *sample,
+                                  struct slipfit_production_report *report);
+
+// What the stroke says as a whole, after its last sample, and what `*unit` learns from it. Call it once a stroke, then
+// slipfit_watch_start.
+//
+// # Safety
+// As for slipfit_watch_step; nobody else uses `*unit` and `*end` meanwhile.
+slipfit_status slipfit_watch_finish(const struct slipfit_watch *storage,
+                                    struct slipfit_unit *unit,
+                                    struct slipfit_stroke_end *end);
+
+// How the friction of `*unit` changes over its strokes. SLIPFIT_UNIT_STROKES before the third stroke after its reference of ten.
+//
+// # Safety
+// As for slipfit_watch_step; nobody else uses `*wear` meanwhile.
+slipfit_status slipfit_watch_wear(const struct slipfit_watch *storage,
+                                  const struct slipfit_unit *unit,
+                                  struct slipfit_wear *wear);
+
+// Makes a unit in `*storage` that has made no stroke: the mean of its production.
+//
+// # Safety
+// If the pointer is neither null nor misaligned, memory for a unit is there, and nobody else uses it meanwhile.
+slipfit_status slipfit_unit_init(struct slipfit_unit *storage);
+
+// Writes what is known of a unit to the SLIPFIT_UNIT_SIZE bytes at `saved`, with a checksum, for non-volatile memory.
+//
+// # Safety
+// As for slipfit_unit_init; the unit has been written before; if `saved` is not null, nobody else uses those bytes meanwhile.
+slipfit_status slipfit_unit_save(const struct slipfit_unit *storage,
+                                 uint64_t scene_hash,
+                                 uint8_t *saved);
+
+// Makes the unit in `*storage` that was saved in the SLIPFIT_UNIT_SIZE bytes at `saved`. SLIPFIT_UNIT_MAGIC if none was, SLIPFIT_UNIT_CHECKSUM
+// if they have changed, SLIPFIT_UNIT_SCENE if it was saved for another scene.
+//
+// # Safety
+// As for slipfit_unit_init; if `saved` is not null, the bytes are there.
+slipfit_status slipfit_unit_load(struct slipfit_unit *storage,
+                                 uint64_t scene_hash,
+                                 const uint8_t *saved);
 
 #ifdef __cplusplus
 }  // extern "C"

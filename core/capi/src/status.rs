@@ -56,6 +56,14 @@ pub const SLIPFIT_BANK_SAMPLES: slipfit_status = 33;
 pub const SLIPFIT_MONITOR_BAND: slipfit_status = 34;
 /// The table has no unit of the level: those on either side end differently, one runs and one jams, say.
 pub const SLIPFIT_MONITOR_MIXED: slipfit_status = 35;
+/// No unit was saved there, or by another version.
+pub const SLIPFIT_UNIT_MAGIC: slipfit_status = 40;
+/// The saved unit is damaged.
+pub const SLIPFIT_UNIT_CHECKSUM: slipfit_status = 41;
+/// The unit was saved for another scene or other laws.
+pub const SLIPFIT_UNIT_SCENE: slipfit_status = 42;
+/// Too few strokes to say.
+pub const SLIPFIT_UNIT_STROKES: slipfit_status = 43;
 
 /// The version of the library, 10000·major + 100·minor + patch.
 pub const SLIPFIT_VERSION: u32 = 100;
@@ -94,6 +102,10 @@ pub extern "C" fn slipfit_status_name(status: slipfit_status) -> *const c_char {
         SLIPFIT_BANK_SAMPLES => c"SLIPFIT_BANK_SAMPLES",
         SLIPFIT_MONITOR_BAND => c"SLIPFIT_MONITOR_BAND",
         SLIPFIT_MONITOR_MIXED => c"SLIPFIT_MONITOR_MIXED",
+        SLIPFIT_UNIT_MAGIC => c"SLIPFIT_UNIT_MAGIC",
+        SLIPFIT_UNIT_CHECKSUM => c"SLIPFIT_UNIT_CHECKSUM",
+        SLIPFIT_UNIT_SCENE => c"SLIPFIT_UNIT_SCENE",
+        SLIPFIT_UNIT_STROKES => c"SLIPFIT_UNIT_STROKES",
         _ => c"unknown",
     };
     name.as_ptr()

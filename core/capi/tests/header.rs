@@ -7,8 +7,9 @@ fn the_header_is_current() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(root.join("cbindgen.toml")).unwrap();
     let mut found = Vec::new();
-    let sources = ["status", "scene", "predictor", "ahead", "table", "slots", "scrubber", "monitor", "jam_watch"]
-        .map(|name| root.join(format!("src/{name}.rs")));
+    let sources =
+        ["status", "scene", "predictor", "ahead", "table", "slots", "scrubber", "monitor", "jam_watch", "production"]
+            .map(|name| root.join(format!("src/{name}.rs")));
     let mut builder = cbindgen::Builder::new().with_config(config);
     for source in sources {
         builder = builder.with_src(source);

@@ -114,6 +114,14 @@ impl<'a, V: Nodes> Production<'a, V> {
         Ok(Self { table: self.table.expect_scene(hash)?, ..self })
     }
 
+    /// This production, if it is over time or position as asked for: a place is a bare number.
+    ///
+    /// # Errors
+    /// [`TableError::Kind`] if it is over the other.
+    pub fn expect_over(self, kind: AxisKind) -> Result<Self, TableError> {
+        Ok(Self { table: self.table.expect_axes([AxisKind::Row, kind])?, ..self })
+    }
+
     /// Its table.
     pub fn table(&self) -> &Table<'a, 2, V> {
         &self.table

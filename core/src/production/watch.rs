@@ -86,15 +86,10 @@ impl<'a, V: Nodes> Watch<'a, V> {
         let has_risen = rise > self.drift * deviation;
         let is_learned = !is_suspect && !has_risen && unit.strokes() < super::drift::REFERENCE;
         if is_learned {
-            self.learn(unit, stroke);
+            unit.learn(&self.coefficients(stroke));
         }
         let verdict = if worst == Verdict::Free && has_risen { Verdict::Tight } else { worst };
         StrokeEnd { verdict, is_learned, rise, deviation }
-    }
-
-    /// Lets `unit` learn from a whole `stroke`, whatever its verdict: for who knows that it is good. [`Watch::finish`] decides by itself.
-    pub fn learn(&self, unit: &mut Unit, stroke: &Stroke) {
-        unit.learn(&self.coefficients(stroke));
     }
 
     /// The coefficients of the modes that a whole `stroke` has.

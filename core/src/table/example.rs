@@ -44,3 +44,18 @@ fn sealed(axes: &[(AxisKind, u32, f32)], encoding: Encoding, scale: f32, values:
     bytes.extend(layout::checksum(&bytes).to_le_bytes());
     bytes
 }
+
+/// Adds the record of a production to a table of rows.
+pub(crate) fn insert_record(bytes: &mut Vec<u8>, numbers: impl Iterator<Item = f32>) {
+    bytes.truncate(bytes.len() - layout::CHECKSUM_SIZE);
+    bytes.extend(numbers.flat_map(f32::to_le_bytes));
+    let length = (bytes.len() + layout::CHECKSUM_SIZE) as u32;
+    bytes[layout::LENGTH_AT..][..4].copy_from_slice(&length.to_le_bytes());
+    bytes.extend(layout::checksum(bytes).to_le_bytes());
+}
+
+/// Replaces it.
+pub(crate) fn replace_record(bytes: &mut Vec<u8>, numbers: impl Iterator<Item = f32>) {
+    bytes.truncate(bytes.len() - layout::PRODUCTION_SIZE);
+    insert_record(bytes, numbers);
+}

@@ -8,6 +8,7 @@ mod jam_watch;
 mod monitor;
 mod pointers;
 mod predictor;
+mod production;
 mod scrubber;
 mod slots;
 mod table;

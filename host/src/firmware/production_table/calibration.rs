@@ -43,6 +43,9 @@ const ALARMS: [f64; RATES] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 /// Part of the speed commanded below which a drive stands, and for how many samples: as the watch has it.
 const STANDING: f64 = 0.1;
 
+/// Limits while they are not known: nothing exceeds them.
+const NO_LIMIT: f32 = 1e6;
+
 /// What seeds of the noise are derived with.
 const STREAM: u64 = 6 << 32;
 
@@ -117,9 +120,9 @@ impl Learned<'_> {
             friction: self.wish.friction as f32,
             completing: (self.complete.len() as f64 / self.wish.units as f64) as f32,
             units: self.complete.len() as f32,
-            untaught: [1.0; RATES],
-            taught: [1.0; RATES],
-            drift: [1e6; RATES],
+            untaught: [NO_LIMIT; RATES],
+            taught: [NO_LIMIT; RATES],
+            drift: [NO_LIMIT; RATES],
             deviation: 1.0,
             doubt: 1e30,
             ..Record::default()
@@ -154,7 +157,7 @@ impl Learned<'_> {
         let watch = draft.watch();
         let told = parallel::map(&units, |(unit, strokes)| {
             let each = strokes.iter().enumerate().map(|(k, samples)| {
-                let seen = self.seen(&watch, &Unit::default(), samples, *unit, k, true, &mut |_, _, _| {});
+                let seen = self.seen(&watch, &Unit::default(), samples, [*unit, k as u64 + 1], true, &mut |_, _, _| {});
                 let coefficients = watch.coefficients(&seen).map(f64::from);
                 (samples.friction, coefficients, f64::from(watch.weighted(&seen)))
             });
@@ -169,9 +172,8 @@ impl Learned<'_> {
         let taught = parallel::map(&units, |(number, strokes)| {
             let mut unit = Unit::default();
             for (k, samples) in strokes.iter().take(LEARNED).enumerate() {
-                let seen = self.seen(&watch, &unit, samples, *number, k, true, &mut |_, _, _| {});
-                // The limits are not known yet: no verdict stops it from learning.
-                watch.learn(&mut unit, &seen);
+                let seen = self.seen(&watch, &unit, samples, [*number, k as u64 + 1], true, &mut |_, _, _| {});
+                let _ = watch.finish(&mut unit, &seen);
             }
             unit
         });
@@ -199,14 +201,17 @@ impl Learned<'_> {
         let widths = [above, below, taught_width];
         let draft = self.draft(&widths, &weight, record)?;
         let watch = draft.watch();
-        let all: Vec<usize> = (0..self.firsts.len()).collect();
-        let most = parallel::map(&all, |i| {
+        let firsts = self.complete.iter().zip(self.firsts).map(|(number, samples)| (*number, 0, samples));
+        let others =
+            units.iter().flat_map(|(number, strokes)| (1..).zip(strokes).map(|(k, samples)| (*number, k, samples)));
+        let all: Vec<(u64, usize, &Samples)> = firsts.chain(others).collect();
+        let most = parallel::map(&all, |(number, k, samples)| {
             let (mut tight, mut band) = (f64::NEG_INFINITY, 0.0f64);
-            let number = self.complete[*i];
-            self.seen(&watch, &Unit::default(), &self.firsts[*i], number, 0, true, &mut |_, excess, _| {
-                tight = tight.max(excess);
+            let unit = Unit::default();
+            self.seen(&watch, &unit, samples, [*number, *k as u64], true, &mut |_, excess, _| {
+                tight = tight.max(excess)
             });
-            self.seen(&watch, &Unit::default(), &self.firsts[*i], number, 0, false, &mut |at, _, force| {
+            self.seen(&watch, &unit, samples, [*number, *k as u64], false, &mut |at, _, force| {
                 let row =
                     |row: Row| f64::from(watch.production().row(row as usize, at).map_or(0.0, |[force, _]| force));
                 let beyond = force - row(Row::Mean);
@@ -215,23 +220,30 @@ impl Learned<'_> {
             });
             [tight, band]
         });
-        record.untaught =
-            limits(most.iter().map(|[tight, _]| *tight).collect(), ALARMS).map(|limit| limit.max(0.0) as f32);
-        record.band = limits(most.iter().map(|[_, band]| *band).collect(), [0.01])[0] as f32;
+        let of = |k: usize| most.iter().map(|found| found[k]).collect::<Vec<f64>>();
+        record.untaught = limits(of(0), ALARMS).map(|limit| limit.max(0.0) as f32);
+        record.band = limits(of(1), [0.01])[0] as f32;
         let both: Vec<_> = units.iter().zip(&taught).collect();
         let most = parallel::map(&both, |((number, strokes), unit)| {
+            let mut unit = **unit;
             let judged = strokes.iter().enumerate().skip(LEARNED).map(|(k, samples)| {
                 let mut tight = f64::NEG_INFINITY;
-                self.seen(&watch, unit, samples, *number, k, true, &mut |_, excess, _| tight = tight.max(excess));
-                tight
+                let seen = self.seen(&watch, &unit, samples, [*number, k as u64 + 1], true, &mut |_, excess, _| {
+                    tight = tight.max(excess);
+                });
+                let end = watch.finish(&mut unit, &seen);
+                [tight, f64::from(end.rise / end.deviation)]
             });
-            judged.collect::<Vec<f64>>()
+            judged.collect::<Vec<[f64; 2]>>()
         });
+        let of = |k: usize| most.iter().flatten().map(|found| found[k]).collect::<Vec<f64>>();
         // Half of the alarms of a taught unit.
-        record.taught = limits(most.into_iter().flatten().collect(), ALARMS.map(|rate| 0.5 * rate))
-            .map(|limit| limit.max(0.0) as f32);
-        // The other half: the last one, two or three strokes, each with a third of it.
-        record.drift = ALARMS.map(|rate| upper_score::<f64>(rate / 6.0) as f32);
+        record.taught = limits(of(0), ALARMS.map(|rate| 0.5 * rate)).map(|limit| limit.max(0.0) as f32);
+        // The other half: the last one, two or three strokes, each with a third of it. Frictions are normal from stroke to stroke; what
+        // a stroke tells of them may have a longer tail.
+        let shares = ALARMS.map(|rate| rate / 6.0);
+        let told = limits(of(1), shares);
+        record.drift = std::array::from_fn(|k| upper_score::<f64>(shares[k]).max(told[k]) as f32);
         record.margin = self.margin(&chosen, done)?;
         Ok(Calibration { widths, weight, record, differences: [from_mean, before, residual] })
     }
@@ -262,18 +274,17 @@ impl Learned<'_> {
     }
 
     /// Lets `watch` see a stroke of `unit`, the `k`-th of unit `number`, with or without noise; `see` gets each place from the drive's start on, the
-    /// excess as a multiple of its limit for 1 and the force.
+    /// excess as a multiple of its width and the force.
     fn seen(
         &self,
         watch: &Watch<'_, I16Nodes<'_>>,
         unit: &Unit,
         samples: &Samples,
-        number: u64,
-        k: usize,
+        [number, k]: [u64; 2],
         has_noise: bool,
         see: &mut dyn FnMut(f32, f64, f64),
     ) -> Seen {
-        let mut noise = unit_stream(derived(derived(self.wish.seed, STREAM), number), k as u64);
+        let mut noise = unit_stream(derived(derived(self.wish.seed, STREAM), number), k);
         let axis = watch.production().places();
         let mut stroke = watch.start();
         for (i, at) in samples.at.iter().enumerate() {
@@ -285,7 +296,11 @@ impl Learned<'_> {
             let command = (self.sign * 1e-30) as f32;
             let report = watch.step(unit, &mut stroke, &Sample { at: *at, force: force as f32, speed, command });
             if *at >= axis.first() && *at <= axis.last() {
-                see(*at, f64::from(report.excess) / f64::from(report.limit).max(f64::MIN_POSITIVE), own);
+                see(
+                    *at,
+                    f64::from(NO_LIMIT) * f64::from(report.excess) / f64::from(report.limit).max(f64::MIN_POSITIVE),
+                    own,
+                );
             }
         }
         stroke

@@ -32,7 +32,7 @@ use crate::{
 pub use samples::Over;
 
 /// Units that are taught, for the limits of taught units.
-const TAUGHT_UNITS: usize = 2000;
+const TAUGHT_UNITS: usize = 3000;
 
 /// The fewest units that complete their stroke of which there is a table.
 pub const UNITS_LEAST: usize = 100;
