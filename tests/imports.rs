@@ -99,6 +99,7 @@ const LAYERS: [(&str, &[&str]); 7] = [
             "scene",
             "table",
             "monitor",
+            "production",
             "sampling",
         ],
     ),

@@ -62,6 +62,7 @@ fn every_field_is_in_the_guide() {
         ),
         ("table", &["table", "--n", "0:2:1", "-o", "table.bin"]),
         ("table", &["table", "--over", "position", "--n", "0:2:1", "-o", "z.bin"]),
+        ("table --production", &["table", "--production", "--units", "300", "--period", "5", "-o", "units.bin"]),
         ("tolerance", &["tolerance", "clutch", "--samples", "1000"]),
         ("tolerance", &["tolerance", "--samples", "1000"]),
         ("tolerance of given gaps", &["tolerance", "cd-rom-slide"]),

@@ -12,6 +12,9 @@ const LEFT: f32 = 1.0 / (2.0 * SMOOTHING - 1.0);
 /// The square of the three standard deviations of the noise that count beside a width.
 const NOISES: f32 = 9.0;
 
+/// Standard deviations of the noise that a sample may differ by beside a width before it counts as an event.
+const EVENT_NOISES: f32 = 3.0;
+
 /// Samples that a sign of a jam, or of a dead sensor, has to last.
 const HOLD: u32 = 10;
 
@@ -78,9 +81,9 @@ pub struct Stroke {
     smoothed: f32,
     /// Force above the mean times each mode, summed over the places.
     sums: [f32; MODES_MOST],
-    /// The same times the weight.
+    /// The same times the weight, events cut off.
     weighted: f32,
-    /// Force above the unit's own times the weight, summed over the places.
+    /// Force above the unit's own times the weight, events cut off.
     above: f32,
     /// The squared weight likewise.
     squared: f32,
@@ -130,7 +133,7 @@ impl Stroke {
         &self.sums
     }
 
-    /// The same times the weight.
+    /// The same times the weight, events cut off.
     pub(super) fn weighted(&self) -> f32 {
         self.weighted
     }
@@ -168,21 +171,28 @@ impl<V: Nodes> Watch<'_, V> {
             speed += coefficient * velocity;
             in_range &= production.table.is_in_range(force);
         }
+        let is_taught = unit.is_taught();
+        let untaught = if sample.command < 0.0 { Row::Below } else { Row::Above };
+        let (row, factor) = if is_taught { (Row::Taught, self.taught) } else { (untaught, self.untaught) };
+        let width = production.force(row as usize, &place);
+
+        // A rise of the friction is a little more force all along. What differs by more than strokes do is an event that comes at
+        // another time, and counts as no more than that.
+        let beyond = if is_inside { sample.force - own } else { 0.0 };
+        let most = if is_taught { width + EVENT_NOISES * record.noise } else { FORCE_MOST };
+        let part = if beyond > most { most } else { beyond };
+        let part = if part < -most { -most } else { part };
         let weight = production.force(Row::Weight as usize, &place);
-        stroke.weighted += by_length * weight;
+        stroke.weighted += length * weight * (part + (own - mean));
 
         // What this stroke has told of its friction before this sample, by least squares; none of a unit that is not taught.
-        let is_taught = unit.is_taught();
         let rise = stroke.above / (stroke.squared + record.doubt);
         let expected = own + if is_taught { rise * weight } else { 0.0 };
-        stroke.above += if is_inside { length * weight * (sample.force - own) } else { 0.0 };
+        stroke.above += length * weight * part;
         stroke.squared += length * weight * weight;
 
         let difference = if is_inside { sample.force - expected } else { 0.0 };
         stroke.smoothed += (difference - stroke.smoothed) * (1.0 / SMOOTHING);
-        let untaught = if sample.command < 0.0 { Row::Below } else { Row::Above };
-        let (row, factor) = if is_taught { (Row::Taught, self.taught) } else { (untaught, self.untaught) };
-        let width = production.force(row as usize, &place);
         let limit = factor * Scalar::sqrt(width * width + NOISES * LEFT * record.noise * record.noise);
         let excess = sample.along(stroke.smoothed);
 

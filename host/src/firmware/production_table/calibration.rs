@@ -24,6 +24,9 @@ use crate::{
 /// Strokes of a unit that is taught: those that it learns from, and as many that it is judged by.
 pub const STROKES: u64 = 6;
 
+/// Strokes of every unit, before these.
+pub const FIRSTS: u64 = 2;
+
 /// Those that it learns from.
 const LEARNED: usize = 3;
 
@@ -77,7 +80,7 @@ pub struct Learned<'a> {
     pub greatest: f64,
     /// Numbers of the units that complete their stroke.
     pub complete: &'a [u64],
-    /// Their first strokes.
+    /// Strokes of units that complete them.
     pub firsts: &'a [Samples],
     pub rows: &'a Rows,
 }
@@ -118,7 +121,7 @@ impl Learned<'_> {
             period: self.wish.period as f32,
             noise: self.noise as f32,
             friction: self.wish.friction as f32,
-            completing: (self.complete.len() as f64 / self.wish.units as f64) as f32,
+            completing: (self.firsts.len() as f64 / (FIRSTS * self.wish.units) as f64) as f32,
             units: self.complete.len() as f32,
             untaught: [NO_LIMIT; RATES],
             taught: [NO_LIMIT; RATES],
@@ -141,7 +144,7 @@ impl Learned<'_> {
         let step = self.complete.len().div_ceil(TAUGHT_UNITS);
         let chosen: Vec<u64> = self.complete.iter().step_by(step).copied().collect();
         let (friction, every) = (self.wish.friction, self.wish.period);
-        let strokes = Strokes { seed: self.wish.seed, numbers: 1..1 + STROKES, friction, every };
+        let strokes = Strokes { seed: self.wish.seed, numbers: FIRSTS..FIRSTS + STROKES, friction, every };
         let keep = |unit: u64, strokes: Vec<(f64, Stroke)>| {
             let complete = strokes.iter().filter(|(_, stroke)| stroke.is_complete());
             let samples = complete.map(|(friction, stroke)| Samples::of(*friction, stroke, self.wish.over, self.sign));
@@ -155,28 +158,12 @@ impl Learned<'_> {
         let weight = self.weight(&units, &at_nodes);
         let draft = self.draft(&draft_widths, &weight, record)?;
         let watch = draft.watch();
-        let told = parallel::map(&units, |(unit, strokes)| {
-            let each = strokes.iter().enumerate().map(|(k, samples)| {
-                let seen = self.seen(&watch, &Unit::default(), samples, [*unit, k as u64 + 1], true, &mut |_, _, _| {});
-                let coefficients = watch.coefficients(&seen).map(f64::from);
-                (samples.friction, coefficients, f64::from(watch.weighted(&seen)))
-            });
-            each.collect::<Vec<_>>()
-        });
-        self.set_variances(&told, &mut record);
-        self.set_response(&told, &mut record);
+        let told = parallel::map(&units, |(number, strokes)| self.told(&watch, &Unit::default(), *number, strokes));
+        set_variances(&told, &mut record);
 
         // Taught by three strokes, judged by the others.
         let draft = self.draft(&draft_widths, &weight, record)?;
-        let watch = draft.watch();
-        let taught = parallel::map(&units, |(number, strokes)| {
-            let mut unit = Unit::default();
-            for (k, samples) in strokes.iter().take(LEARNED).enumerate() {
-                let seen = self.seen(&watch, &unit, samples, [*number, k as u64 + 1], true, &mut |_, _, _| {});
-                let _ = watch.finish(&mut unit, &seen);
-            }
-            unit
-        });
+        let taught = self.taught(&draft.watch(), &units);
         let mut strokes_of_taught = Vec::new();
         for ((_, strokes), unit) in units.iter().zip(&taught) {
             let coefficients = unit.coefficients(&record.variances);
@@ -197,21 +184,25 @@ impl Learned<'_> {
         let residual = root_mean_square(&differences);
         record.residual = residual as f32;
 
-        // Limits, as what the watch computes exceeds them.
         let widths = [above, below, taught_width];
+
+        // What a stroke tells of the friction, events cut off.
         let draft = self.draft(&widths, &weight, record)?;
         let watch = draft.watch();
-        let firsts = self.complete.iter().zip(self.firsts).map(|(number, samples)| (*number, 0, samples));
-        let others =
-            units.iter().flat_map(|(number, strokes)| (1..).zip(strokes).map(|(k, samples)| (*number, k, samples)));
-        let all: Vec<(u64, usize, &Samples)> = firsts.chain(others).collect();
-        let most = parallel::map(&all, |(number, k, samples)| {
+        let both: Vec<_> = units.iter().zip(&taught).collect();
+        let told = parallel::map(&both, |((number, strokes), unit)| self.told(&watch, unit, *number, strokes));
+        self.set_response(&told, &mut record);
+
+        // Limits, as what the watch computes exceeds them.
+        let draft = self.draft(&widths, &weight, record)?;
+        let watch = draft.watch();
+        let taught = self.taught(&watch, &units);
+        let all: Vec<(usize, &Samples)> = self.firsts.iter().enumerate().collect();
+        let most = parallel::map(&all, |(i, samples)| {
             let (mut tight, mut band) = (f64::NEG_INFINITY, 0.0f64);
-            let unit = Unit::default();
-            self.seen(&watch, &unit, samples, [*number, *k as u64], true, &mut |_, excess, _| {
-                tight = tight.max(excess)
-            });
-            self.seen(&watch, &unit, samples, [*number, *k as u64], false, &mut |at, _, force| {
+            let (unit, noise) = (Unit::default(), [u64::MAX, *i as u64]);
+            self.seen(&watch, &unit, samples, noise, true, &mut |_, excess, _| tight = tight.max(excess));
+            self.seen(&watch, &unit, samples, noise, false, &mut |at, _, force| {
                 let row =
                     |row: Row| f64::from(watch.production().row(row as usize, at).map_or(0.0, |[force, _]| force));
                 let beyond = force - row(Row::Mean);
@@ -344,17 +335,25 @@ impl Learned<'_> {
         smoothed.into_iter().map(|x| scale * x).collect()
     }
 
-    fn set_variances(&self, told: &[Vec<Told>], record: &mut Record) {
-        let (mut squares, mut count) = ([0.0; MODES_MOST], 0.0);
-        for strokes in told {
-            for (k, sum) in squares.iter_mut().enumerate() {
-                let mean =
-                    strokes.iter().map(|(_, coefficients, _)| coefficients[k]).sum::<f64>() / strokes.len() as f64;
-                *sum += strokes.iter().map(|(_, c, _)| (c[k] - mean) * (c[k] - mean)).sum::<f64>();
+    /// What `watch` tells of each of the `strokes` of `unit`.
+    fn told(&self, watch: &Watch<'_, I16Nodes<'_>>, unit: &Unit, number: u64, strokes: &[Samples]) -> Vec<Told> {
+        let told = (1..).zip(strokes).map(|(k, samples)| {
+            let seen = self.seen(watch, unit, samples, [number, k], true, &mut |_, _, _| {});
+            (samples.friction, watch.coefficients(&seen).map(f64::from), f64::from(watch.weighted(&seen)))
+        });
+        told.collect()
+    }
+
+    /// The units, each taught by its first strokes.
+    fn taught(&self, watch: &Watch<'_, I16Nodes<'_>>, units: &[(u64, Vec<Samples>)]) -> Vec<Unit> {
+        parallel::map(units, |(number, strokes)| {
+            let mut unit = Unit::default();
+            for (k, samples) in (1..).zip(strokes.iter().take(LEARNED)) {
+                let seen = self.seen(watch, &unit, samples, [*number, k], true, &mut |_, _, _| {});
+                let _ = watch.finish(&mut unit, &seen);
             }
-            count += strokes.len() as f64 - 1.0;
-        }
-        record.variances = squares.map(|sum| (sum / f64::max(count, 1.0)) as f32);
+            unit
+        })
     }
 
     /// How the weighted force rises with the friction: of the mean unit, what each mode adds, and how well a stroke tells the friction.
@@ -448,6 +447,19 @@ impl Learned<'_> {
 
 /// Friction of a stroke, and the coefficients and the weighted force that the controller's code finds.
 type Told = (f64, [f64; MODES_MOST], f64);
+
+/// The variance of each coefficient from stroke to stroke of a unit.
+fn set_variances(told: &[Vec<Told>], record: &mut Record) {
+    let (mut squares, mut count) = ([0.0; MODES_MOST], 0.0);
+    for strokes in told {
+        for (k, sum) in squares.iter_mut().enumerate() {
+            let mean = strokes.iter().map(|(_, coefficients, _)| coefficients[k]).sum::<f64>() / strokes.len() as f64;
+            *sum += strokes.iter().map(|(_, c, _)| (c[k] - mean) * (c[k] - mean)).sum::<f64>();
+        }
+        count += strokes.len() as f64 - 1.0;
+    }
+    record.variances = squares.map(|sum| (sum / f64::max(count, 1.0)) as f32);
+}
 
 /// Widths at the nodes, of which `all` holds the differences (N) of each stroke: what few of them exceed there or near it in the direction
 /// of `sign`.

@@ -1,7 +1,7 @@
 //! The table of a production: what units that complete their stroke need, in which modes they differ, and limits for a watch over them,
 //! in the layout that [`slipfit_core::production`] describes and reads.
 //!
-//! Many units make a stroke each: their mean and modes. Some of them make six, with a friction that differs from stroke to stroke: the code
+//! Many units make two strokes each: their mean and modes. Some of them make six more, with a friction that differs from stroke to stroke: the code
 //! of the controller itself learns from the first three and is judged by the others, so that limits hold for what it computes.
 
 mod calibration;
@@ -160,19 +160,24 @@ pub fn make(
     check(wish)?;
     let drive = subject.drive();
     let sign = if drive.speed < 0.0 { -1.0 } else { 1.0 };
-    let strokes = Strokes { seed: wish.seed, numbers: 0..1, friction: wish.friction, every: wish.period };
+    let strokes =
+        Strokes { seed: wish.seed, numbers: 0..calibration::FIRSTS, friction: wish.friction, every: wish.period };
     let numbers: Vec<u64> = (0..wish.units).collect();
     let kept = strokes.simulate(
         subject,
         production,
         &numbers,
         |unit, strokes| {
-            let (friction, stroke) = strokes.first()?;
-            stroke.is_complete().then(|| (unit, Samples::of(*friction, stroke, wish.over, sign)))
+            let complete = strokes.iter().filter(|(_, stroke)| stroke.is_complete());
+            let samples = complete.map(|(friction, stroke)| Samples::of(*friction, stroke, wish.over, sign));
+            let is_first = strokes.first().is_some_and(|(_, stroke)| stroke.is_complete());
+            (is_first.then_some(unit), samples.collect::<Vec<_>>())
         },
         &done,
     )?;
-    let (complete, firsts): (Vec<u64>, Vec<Samples>) = kept.into_iter().flatten().unzip();
+    let (complete, firsts): (Vec<_>, Vec<_>) = kept.into_iter().unzip();
+    let complete: Vec<u64> = complete.into_iter().flatten().collect();
+    let firsts: Vec<Samples> = firsts.into_iter().flatten().collect();
     if complete.len() < UNITS_LEAST {
         return Err(ProductionTableError::TooFew { complete: complete.len(), units: wish.units });
     }
