@@ -239,7 +239,7 @@ pub unsafe extern "C" fn slipfit_watch_finish(
     })
 }
 
-/// How the friction of `*unit` changes over its strokes. SLIPFIT_UNIT_STROKES before the third stroke after its reference of ten.
+/// How the friction of `*unit` changes over its strokes. SLIPFIT_UNIT_STROKES before the third stroke after its reference of twenty.
 ///
 /// # Safety
 /// As for slipfit_watch_step; nobody else uses `*wear` meanwhile.

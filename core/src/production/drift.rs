@@ -6,7 +6,7 @@
 use crate::Scalar;
 
 /// Strokes of the reference.
-pub const REFERENCE: u32 = 10;
+pub const REFERENCE: u32 = 20;
 
 /// Strokes before which nothing is compared.
 const COMPARED: u32 = 3;

@@ -14,7 +14,7 @@ pub const RATES: usize = 5;
 /// The record of a production. Places are on the table's second axis: s, or m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Record {
-    /// The place from which every unit that completes its stroke moves.
+    /// The place from which units that complete their stroke move: three in ten thousand strokes stand for ten samples later.
     pub moving: f32,
     /// Time (s) from one sample to the next, for which the limits are.
     pub period: f32,
@@ -31,9 +31,9 @@ pub struct Record {
     /// Widths, with three standard deviations of what smoothing leaves of the noise, by which the smoothed force of a unit that is
     /// not taught exceeds the mean in these shares of the strokes: 10⁻², 10⁻³, 10⁻⁴, 10⁻⁵, 10⁻⁶.
     pub untaught: [f32; RATES],
-    /// The same of taught units and what is expected of them, in half of these shares.
+    /// The same of taught units and what is expected of them, in three tenths of these shares.
     pub taught: [f32; RATES],
-    /// Standard deviations by which a friction seems to rise where it does not, in half of these shares.
+    /// Standard deviations by which a friction seems to rise where it does not, in seven tenths of these shares.
     pub drift: [f32; RATES],
     /// Standard deviation of the friction that one stroke tells, as a share of it.
     pub deviation: f32,

@@ -12,7 +12,8 @@ const LEFT: f32 = 1.0 / (2.0 * SMOOTHING - 1.0);
 /// The square of the three standard deviations of the noise that count beside a width.
 const NOISES: f32 = 9.0;
 
-/// Standard deviations of the noise that a sample may differ by beside a width before it counts as an event.
+/// Widths, and standard deviations of the noise, that a sample may differ by before it counts as an event.
+const EVENT_WIDTHS: f32 = 2.0;
 const EVENT_NOISES: f32 = 3.0;
 
 /// Samples that a sign of a jam, or of a dead sensor, has to last.
@@ -143,7 +144,7 @@ impl<V: Nodes> Watch<'_, V> {
     /// What `sample` says of a stroke of `unit`, after those before it. A sample that is not whole is passed over: after ten
     /// of them there is [`Verdict::NoData`].
     ///
-    /// [`Verdict::Jam`]: for ten samples slower than a tenth of the command where every unit that completes its stroke moves.
+    /// [`Verdict::Jam`]: for ten samples slower than a tenth of the command where units that complete their stroke move.
     /// [`Verdict::Tight`]: the smoothed force exceeds the expected one by more than the false-alarm rate allows.
     /// [`Verdict::Ended`]: beyond the table.
     #[inline]
@@ -179,7 +180,7 @@ impl<V: Nodes> Watch<'_, V> {
         // A rise of the friction is a little more force all along. What differs by more than strokes do is an event that comes at
         // another time, and counts as no more than that.
         let beyond = if is_inside { sample.force - own } else { 0.0 };
-        let most = if is_taught { width + EVENT_NOISES * record.noise } else { FORCE_MOST };
+        let most = if is_taught { EVENT_WIDTHS * width + EVENT_NOISES * record.noise } else { FORCE_MOST };
         let part = if beyond > most { most } else { beyond };
         let part = if part < -most { -most } else { part };
         let weight = production.force(Row::Weight as usize, &place);

@@ -143,12 +143,12 @@ fn three_strokes_teach_a_unit_and_more_of_them_shrink_less() {
     let bytes = bytes();
     let watch = watch(&bytes, 1e-3);
     let (mut unit, own) = (Unit::default(), [1.2, -0.8]);
-    for strokes in 0..12u32 {
+    for strokes in 0..22u32 {
         let (_, reports) = seen(&watch, &unit, force_of(own, 0.0));
-        assert_eq!((unit.strokes(), unit.is_taught()), (strokes.min(10), strokes >= 3));
+        assert_eq!((unit.strokes(), unit.is_taught()), (strokes.min(20), strokes >= 3));
         let expected = |t: f32| {
             // What is known by n strokes of the variances within units and between them.
-            let n = strokes.min(10) as f32;
+            let n = strokes.min(20) as f32;
             let share = |within: f32| if n >= 3.0 { n * (1.0 - within) / (n * (1.0 - within) + within) } else { 0.0 };
             MEAN + share(0.1) * own[0] * MODES[0] + share(0.5) * own[1] * MODES[1] * shape(1, t)
         };
@@ -158,7 +158,7 @@ fn three_strokes_teach_a_unit_and_more_of_them_shrink_less() {
             assert_eq!(reports[i].verdict, Verdict::Free);
         }
         let end = made(&watch, &mut unit, own, 0.0);
-        assert_eq!((end.verdict, end.is_learned), (Verdict::Free, strokes < 10));
+        assert_eq!((end.verdict, end.is_learned), (Verdict::Free, strokes < 20));
         assert_eq!(end.deviation.is_finite(), strokes >= 3);
         assert!(end.rise.abs() < 1e-4, "{end:?}");
     }
@@ -244,19 +244,19 @@ fn a_rise_of_the_friction_is_found_and_never_learned() {
     let watch = watch(&bytes, 1e-3);
     let own = [1.0, 0.5];
     let mut unit = Unit::default();
-    for k in 0..10 {
+    for k in 0..20 {
         // 3 % up and down, whose mean is none.
         let rise = if k % 2 == 0 { 0.03 } else { -0.03 };
         assert_eq!(made(&watch, &mut unit, own, rise).verdict, Verdict::Free);
     }
     let reference = unit;
-    // One stroke shows 13 %: 3.5 · 3 % · √(1 + 1/10) = 11 %.
+    // One stroke shows 13 %: 3.5 · 3 % · √(1 + 1/20) = 11 %.
     let end = made(&watch, &mut unit, own, 0.13);
-    assert!((end.rise - 0.13).abs() < 0.003 && (end.deviation - 0.03 * 1.1f32.sqrt()).abs() < 1e-6, "{end:?}");
+    assert!((end.rise - 0.13).abs() < 0.003 && (end.deviation - 0.03 * 1.05f32.sqrt()).abs() < 1e-6, "{end:?}");
     assert_eq!((end.verdict, end.is_learned), (Verdict::Tight, false));
-    // 8 % shows in three: 3.5 · 3 % · √(1/3 + 1/10) = 6.9 %; in two it is 8.1 %.
+    // 7 % shows in three: 3.5 · 3 % · √(1/3 + 1/20) = 6.5 %; in two it is 7.8 %.
     let mut unit = reference;
-    let verdicts = [0; 3].map(|_| made(&watch, &mut unit, own, 0.08).verdict);
+    let verdicts = [0; 3].map(|_| made(&watch, &mut unit, own, 0.07).verdict);
     assert_eq!(verdicts, [Verdict::Free, Verdict::Free, Verdict::Tight]);
     // A fall is none.
     let mut unit = reference;
@@ -278,15 +278,15 @@ fn an_event_at_another_time_is_no_rise_of_the_friction() {
     let bytes = bytes();
     let watch = watch(&bytes, 1e-3);
     let mut unit = Unit::default();
-    for _ in 0..10 {
+    for _ in 0..20 {
         let _ = made(&watch, &mut unit, [0.0, 0.0], 0.0);
     }
-    // 50 N for a twentieth of a stroke would be 1.25 of the friction; of these the width of 1 N counts.
+    // 50 N for a twentieth of a stroke would be 1.25 of the friction; of these two widths of 1 N count.
     let (stroke, _) = seen(&watch, &unit, |t| if (0.5..0.55).contains(&t) { 52.0 } else { MEAN });
     let end = watch.finish(&mut unit, &stroke);
-    assert!((end.rise - 0.05 / MEAN).abs() < 1e-3, "{end:?}");
+    assert!((end.rise - 0.1 / MEAN).abs() < 1e-3, "{end:?}");
     let (stroke, _) = seen(&watch, &unit, |t| if (0.5..0.55).contains(&t) { -48.0 } else { MEAN });
-    assert!((watch.weighted(&stroke) + 0.05).abs() < 1e-3);
+    assert!((watch.weighted(&stroke) + 0.1).abs() < 1e-3);
 }
 
 #[test]
@@ -295,7 +295,7 @@ fn wear_has_a_slope_and_an_end() {
     let watch = watch(&bytes, 1e-6);
     let own = [0.0, 0.0];
     let mut unit = Unit::default();
-    for _ in 0..10 {
+    for _ in 0..20 {
         let _ = made(&watch, &mut unit, own, 0.0);
     }
     assert_eq!(unit.drift().trend().line(0.03), None);
@@ -320,7 +320,7 @@ fn what_a_stroke_tells_of_its_friction_is_expected_within_it() {
     let believing = bytes_of(&Record { doubt: 0.01, ..record() });
     let watch = watch(&believing, 1e-3);
     let mut unit = Unit::default();
-    for _ in 0..10 {
+    for _ in 0..20 {
         let _ = made(&watch, &mut unit, [0.0, 0.0], 0.0);
     }
     let (_, reports) = seen(&watch, &unit, force_of([0.0, 0.0], 0.05));
@@ -389,7 +389,7 @@ fn what_is_known_of_a_unit_is_saved_whole() {
     let bytes = bytes();
     let watch = watch(&bytes, 1e-3);
     let mut unit = Unit::default();
-    for k in 0..20 {
+    for k in 0..30 {
         let _ = made(&watch, &mut unit, [0.5, -0.25], 0.002 * k as f32);
     }
     let saved = unit.to_bytes(7);

@@ -38,7 +38,7 @@ pub struct StrokeEnd {
 
 impl<'a, V: Nodes> Watch<'a, V> {
     /// A watch by a `production` that gives a false alarm in a share `rate` of the strokes of units that complete them, 10⁻⁶ to
-    /// 10⁻². Before a unit is taught all alarms are those of its samples; then half of them, and half those of its friction.
+    /// 10⁻². Before a unit is taught all alarms are those of its samples; then three tenths of them, and the rest those of its friction.
     ///
     /// # Errors
     /// [`ProductionError::Parameter`] if the rate is out of bounds.
@@ -60,7 +60,7 @@ impl<'a, V: Nodes> Watch<'a, V> {
     }
 
     /// What the `stroke` says as a whole, and what `unit` learns from it: its coefficients and the reference of its friction from the first
-    /// ten whole strokes without an alarm.
+    /// twenty whole strokes without an alarm.
     pub fn finish(&self, unit: &mut Unit, stroke: &Stroke) -> StrokeEnd {
         let record = self.production.record();
         let places = self.production.places();

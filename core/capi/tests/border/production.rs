@@ -71,7 +71,7 @@ fn a_unit_is_taught_watched_saved_and_loaded_as_in_rust() {
         assert_eq!(slipfit_watch_step(&mut watch, &unit, &sample, &mut report), SLIPFIT_NOT_MADE);
         assert_eq!(slipfit_unit_init(&mut unit), SLIPFIT_OK);
         assert_eq!(slipfit_watch_wear(&watch, &unit, &mut wear), SLIPFIT_UNIT_STROKES);
-        for k in 0..20u8 {
+        for k in 0..30u8 {
             assert_eq!(slipfit_watch_start(&mut watch), SLIPFIT_OK);
             let mut stroke = rust.start();
             for i in 0..=100u8 {

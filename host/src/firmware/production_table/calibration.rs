@@ -43,8 +43,15 @@ const DEVIATION_MOST: f64 = 0.5;
 /// Rates of false alarms in a stroke that limits are stored for.
 const ALARMS: [f64; RATES] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 
-/// Part of the speed commanded below which a drive stands, and for how many samples: as the watch has it.
+/// Share of the alarms of taught units that are those of their friction; the others are those of their samples.
+const OF_FRICTION: f64 = 0.7;
+
+/// Part of the speed commanded below which a drive stands, and the samples after which a watch tells a jam.
 const STANDING: f64 = 0.1;
+const HOLD: usize = 10;
+
+/// Share of the strokes that stand for so long where a jam is told.
+const STANDING_SHARE: f64 = 3e-4;
 
 /// Limits while they are not known: nothing exceeds them.
 const NO_LIMIT: f32 = 1e6;
@@ -228,11 +235,10 @@ impl Learned<'_> {
             judged.collect::<Vec<[f64; 2]>>()
         });
         let of = |k: usize| most.iter().flatten().map(|found| found[k]).collect::<Vec<f64>>();
-        // Half of the alarms of a taught unit.
-        record.taught = limits(of(0), ALARMS.map(|rate| 0.5 * rate)).map(|limit| limit.max(0.0) as f32);
-        // The other half: the last one, two or three strokes, each with a third of it. Frictions are normal from stroke to stroke; what
+        record.taught = limits(of(0), ALARMS.map(|rate| (1.0 - OF_FRICTION) * rate)).map(|limit| limit.max(0.0) as f32);
+        // The last one, two or three strokes, each with a third of it. Frictions are normal from stroke to stroke; what
         // a stroke tells of them may have a longer tail.
-        let shares = ALARMS.map(|rate| rate / 6.0);
+        let shares = ALARMS.map(|rate| OF_FRICTION * rate / 3.0);
         let told = limits(of(1), shares);
         record.drift = std::array::from_fn(|k| upper_score::<f64>(shares[k]).max(told[k]) as f32);
         record.margin = self.margin(&chosen, done)?;
@@ -297,15 +303,24 @@ impl Learned<'_> {
         stroke
     }
 
-    /// The place from which every unit moves, to a sample: where the last of them stood last.
+    /// The place from which units move: few of the strokes stand for longer than a watch waits there or later.
     fn moving(&self) -> f32 {
         let drive = self.subject.drive();
         let least = STANDING * drive.speed.abs();
+        let stands = |speed: &f32| f64::from(*speed) * self.sign < least;
         let stood = |samples: &Samples| {
-            let stands = |speed: f32| f64::from(speed) * self.sign < least;
-            samples.speed.iter().rposition(|speed| stands(*speed)).map_or(0.0, |i| samples.at[i])
+            let mut last = 0.0;
+            let mut count = 0;
+            for (speed, at) in samples.speed.iter().zip(&samples.at) {
+                count = if stands(speed) { count + 1 } else { 0 };
+                last = if count >= HOLD { *at } else { last };
+            }
+            last
         };
-        self.firsts.iter().map(stood).fold(0.0, f32::max)
+        let mut places: Vec<f32> = self.firsts.iter().map(stood).collect();
+        places.sort_by(f32::total_cmp);
+        let beyond = (STANDING_SHARE * places.len() as f64) as usize;
+        places.get(places.len().saturating_sub(1 + beyond)).copied().unwrap_or(0.0)
     }
 
     /// Weights at the nodes: the response of the force to the friction, smoothed, its greatest as great as the greatest mean force.
