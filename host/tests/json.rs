@@ -31,7 +31,7 @@ fn every_field_is_in_the_guide() {
     let output =
         Command::new(env!("CARGO_BIN_EXE_slipfit")).current_dir(folder.path()).args(simulate).output().unwrap();
     assert!(output.status.success());
-    let commands: [(&str, &[&str]); 41] = [
+    let commands: [(&str, &[&str]); 42] = [
         ("check", &["check"]),
         ("capability", &["capability", "parts.csv", "--group", "tool"]),
         ("identify", &["identify", "sought.toml", "run.csv"]),

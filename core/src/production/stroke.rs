@@ -192,8 +192,8 @@ impl<V: Nodes> Watch<'_, V> {
         stroke.above += length * weight * part;
         stroke.squared += length * weight * weight;
 
-        let difference = if is_inside { sample.force - expected } else { 0.0 };
-        stroke.smoothed += (difference - stroke.smoothed) * (1.0 / SMOOTHING);
+        let difference = if is_inside { sample.force - expected - stroke.smoothed } else { 0.0 };
+        stroke.smoothed += difference * (1.0 / SMOOTHING);
         let limit = factor * Scalar::sqrt(width * width + NOISES * LEFT * record.noise * record.noise);
         let excess = sample.along(stroke.smoothed);
 

@@ -35,6 +35,7 @@ use crate::{
     show::force_table::picture,
 };
 
+use production::ProductionArguments;
 pub(super) use words::coarse;
 use words::{describe, describe_short};
 
@@ -82,7 +83,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     #[command(flatten)]
-    production: production::Arguments,
+    production: ProductionArguments,
     #[command(flatten)]
     threads: ThreadArguments,
 }

@@ -19,7 +19,7 @@ use crate::{
 
 /// What only a table of the production takes.
 #[derive(Args)]
-pub(super) struct Arguments {
+pub(super) struct ProductionArguments {
     /// Makes the table of the production instead of the one over the level n.
     ///
     /// It holds the mean force of units that complete their stroke, how units spread about it, and in which modes they differ. From a unit's
@@ -75,7 +75,7 @@ struct Report {
     warnings: Vec<String>,
 }
 
-impl Arguments {
+impl ProductionArguments {
     /// Refuses what has no effect on a table over levels.
     pub fn refuse(&self) -> Result<(), Failure> {
         let given = [
