@@ -257,6 +257,7 @@ fn in_rust() -> String {
             Verdict::Tight => 2,
             Verdict::Jam => 3,
             Verdict::NoData => 4,
+            Verdict::Ended => unreachable!("that is a production's"),
         }] += 1;
         watched.extend([report.tightness.excess, report.tightness.band]);
         bank.add(time, force);

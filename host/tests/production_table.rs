@@ -168,9 +168,9 @@ impl Judge<'_> {
                 let _ = self.seen(&watch, &mut of_three.clone(), stroke, noise, &mut |at| {
                     if at.t >= times[0] && at.t <= times[1] {
                         let [mean, _] = reader.row(0, at.t as f32).unwrap();
-                        found.squares[0] += (at.force - f64::from(mean)).powi(2);
-                        found.squares[1] += (at.force - at.own).powi(2);
-                        found.squares[2] += (at.force - at.expected).powi(2);
+                        for (sum, expected) in found.squares.iter_mut().zip([mean.into(), at.own, at.expected]) {
+                            *sum += (at.force - expected) * (at.force - expected);
+                        }
                         found.count += 1.0;
                     }
                 });
@@ -216,7 +216,7 @@ impl Judge<'_> {
                     is_found |= matches!(end.verdict, Said::Tight | Said::Jam);
                     sum += rise + own;
                     let count = (k - 21) as f64;
-                    is_known |= sum / count > most * 0.03 / count.sqrt();
+                    is_known |= sum / count > most * 0.03 / libm::sqrt(count);
                 }
             }
             Some([is_found, is_known])
@@ -256,7 +256,7 @@ impl Judge<'_> {
 /// The counts that a share of `count` has with a probability of 99.9 %, by the normal distribution with half a count on either side.
 fn likely(share: f64, count: usize) -> [f64; 2] {
     let mean = share * count as f64;
-    let reach = 3.29 * mean.sqrt() + 0.5;
+    let reach = 3.29 * libm::sqrt(mean) + 0.5;
     [mean - reach, mean + reach]
 }
 
@@ -284,7 +284,7 @@ fn ten_thousand_units_of_the_slide_by_a_table_of_ten_thousand_others() {
     }
     drop(firsts);
     let taught = judge.taught(20_000..24_000, 10, [0.2, 1.45], 1e-3);
-    let [mean, own, within] = taught.squares.map(|sum| (sum / taught.count).sqrt());
+    let [mean, own, within] = taught.squares.map(|sum| libm::sqrt(sum / taught.count));
     println!("force by the mean {mean:.4} N, after teach-in {own:.4} N, within the stroke {within:.4} N");
     println!(
         "taught, at 1e-3: {} of {} strokes, likely {:?}",
@@ -319,7 +319,7 @@ fn mechanisms_are_judged_likewise() {
         let band = judge.band(&firsts);
         let [alarms, strokes] = judge.untaught(&firsts, 1e-3);
         let taught = judge.taught(20_000..20_400, 10, [0.0, 10.0], 1e-3);
-        let [mean, own, within] = taught.squares.map(|sum| (sum / taught.count).sqrt());
+        let [mean, own, within] = taught.squares.map(|sum| libm::sqrt(sum / taught.count));
         let powers = [0.2, 0.1].map(|rise| judge.power(30_000..30_200, rise, 1e-3));
         println!(
             "{name}: greatest {:.4}, band {band:.4}, by the mean {mean:.5}, own {own:.5}, within {within:.5}, not taught {alarms} of {strokes}, taught {} \
@@ -329,7 +329,7 @@ fn mechanisms_are_judged_likewise() {
         assert!(own <= 1.05 * mean && within <= 1.05 * own, "{name}");
         assert!(is_likely(1e-3, alarms, strokes) && is_likely(1e-3, taught.alarms, taught.strokes), "{name}");
         // Within what the two samples, that of the table and this one, leave open.
-        assert!((band - 0.99).abs() < 3.0 * (0.99 * 0.01 / strokes as f64).sqrt() * 1.5, "{name} {band}");
+        assert!((band - 0.99).abs() < 3.0 * libm::sqrt(0.99 * 0.01 / strokes as f64) * 1.5, "{name} {band}");
     }
 }
 

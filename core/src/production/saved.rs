@@ -89,3 +89,31 @@ impl Unit {
 
 /// All that is known of a unit is saved.
 const _: () = assert!(size_of::<Unit>() == 4 * NUMBERS);
+
+#[cfg(test)]
+mod tests {
+    use super::{SAVED_SIZE, SavedError, Unit};
+
+    #[test]
+    fn what_is_known_of_a_unit_is_saved_whole() {
+        let mut unit = Unit { strokes: 7, means: core::array::from_fn(|k| 0.5 - k as f32), ..Unit::default() };
+        unit.drift.reference = 2.5;
+        unit.drift.strokes = 11;
+        unit.drift.recent = [1.0, 2.0, 3.0];
+        unit.drift.count = 2;
+        unit.drift.trend.weights = [4.0, 5.0, 6.0];
+        unit.drift.trend.squares = [7.0, 8.0, 9.0];
+        unit.drift.trend.rises = [-1.0, -2.0];
+        let saved = unit.to_bytes(7);
+        // Little-endian everywhere.
+        assert_eq!((&saved[..8], saved[8], saved[16], saved[20]), (&b"SLFU\x01\0\0\0"[..], 7, 7, 11));
+        assert_eq!(Unit::from_bytes(&saved, 7), Ok(unit));
+        assert_eq!(Unit::from_bytes(&saved, 8), Err(SavedError::Scene { found: 7 }));
+        assert_eq!(Unit::from_bytes(&[0xff; SAVED_SIZE], 7), Err(SavedError::Magic));
+        for bit in 0..SAVED_SIZE * 8 {
+            let mut flipped = saved;
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            assert!(Unit::from_bytes(&flipped, 7).is_err(), "{bit}");
+        }
+    }
+}

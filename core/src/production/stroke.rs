@@ -211,7 +211,7 @@ impl<V: Nodes> Watch<'_, V> {
             Verdict::NoData
         } else if is_valid & (sample.at > production.places().last()) {
             Verdict::Ended
-        } else if !(sample.at >= production.places().first()) {
+        } else if sample.at < production.places().first() || sample.at.is_nan() {
             Verdict::Blind
         } else if is_tight {
             Verdict::Tight

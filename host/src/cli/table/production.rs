@@ -127,7 +127,7 @@ impl super::Arguments {
             ("--end", self.end.is_some()),
             ("--max-error", self.max_error.is_some()),
             ("--plot", self.plot.is_some()),
-            ("--n", !self.levels.overrides().is_none()),
+            ("--n", self.levels.overrides().is_some()),
         ];
         match given.into_iter().find(|(_, is_given)| *is_given) {
             Some((option, _)) => Err(Failure::Input(format!("{option} has no effect on a table of the production"))),

@@ -69,7 +69,7 @@ impl Modes {
         for i in order.into_iter().take(count) {
             let variance = parts.eigenvalues[i];
             // What is left is rounding.
-            if !(variance > 1e-9 * whole) {
+            if variance.is_nan() || variance <= 1e-9 * whole {
                 break;
             }
             let vector = parts.eigenvectors.column(i).into_owned();
@@ -110,10 +110,11 @@ mod tests {
             assert!((norm / expected - 1.0).abs() < 1e-3, "{norm} {expected}");
         }
         let sign = found.modes[0][0][50].signum();
-        for i in 0..101 {
-            assert!((sign * found.modes[0][0][i] - 3.0 * one[i]).abs() < 1e-3 * 3.0, "{i}");
+        let [greater, lesser] = [&found.modes[0], &found.modes[1]];
+        for (i, expected) in one.iter().enumerate() {
+            assert!((sign * greater[0][i] - 3.0 * expected).abs() < 3e-3, "{i}");
             // Speeds go with the first.
-            assert!((sign * found.modes[0][1][i] + 0.1).abs() < 1e-9 && found.modes[1][1][i].abs() < 1e-9, "{i}");
+            assert!((sign * greater[1][i] + 0.1).abs() < 1e-9 && lesser[1][i].abs() < 1e-9, "{i}");
         }
     }
 }

@@ -44,13 +44,15 @@ pub fn limits<const N: usize>(mut all: Vec<f64>, rates: [f64; N]) -> [f64; N] {
 mod tests {
     use super::limits;
 
+    type Quantile = fn(f64) -> f64;
+
     /// Of distributions whose quantiles are known: exponential, uniform, Pareto with shape ¼, each by its own quantiles.
     #[test]
     fn tails_of_known_distributions_are_continued() {
         let count = 20_000;
         let shares = || (0..count).map(|i| (f64::from(i) + 0.5) / f64::from(count));
         let rates = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
-        let known: [(&str, fn(f64) -> f64); 3] = [
+        let known: [(&str, Quantile); 3] = [
             ("exponential", |exceeding| -libm::log(exceeding)),
             ("uniform", |exceeding| 1.0 - exceeding),
             ("pareto", |exceeding| 4.0 * (libm::pow(exceeding, -0.25) - 1.0)),

@@ -127,7 +127,7 @@ impl Firsts {
         let first = match record.verdict {
             Verdict::Tight => &mut self.tight,
             Verdict::Jam => &mut self.jam,
-            Verdict::Blind | Verdict::Free | Verdict::NoData => return,
+            Verdict::Blind | Verdict::Free | Verdict::NoData | Verdict::Ended => return,
         };
         *first = first.or(Some(record.periods));
     }
