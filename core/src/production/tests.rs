@@ -232,7 +232,7 @@ fn noise_widens_the_limits() {
     let watch = watch(&noisy, 1e-2);
     let (_, reports) = seen(&watch, &Unit::default(), |_| MEAN);
     // Smoothing over 20 samples leaves 1/39 of the variance.
-    let expected = (WIDTHS[0] * WIDTHS[0] + 9.0 / 39.0f32).sqrt();
+    let expected = libm::sqrtf(WIDTHS[0] * WIDTHS[0] + 9.0 / 39.0);
     assert!((reports[500].limit - expected).abs() < 1e-5);
 }
 
@@ -250,7 +250,7 @@ fn a_rise_of_the_friction_is_found_and_never_learned() {
     let reference = unit;
     // One stroke shows 13 %: 3.5 · 3 % · √(1 + 1/20) = 11 %.
     let end = made(&watch, &mut unit, own, 0.13);
-    assert!((end.rise - 0.13).abs() < 0.003 && (end.deviation - 0.03 * 1.05f32.sqrt()).abs() < 1e-6, "{end:?}");
+    assert!((end.rise - 0.13).abs() < 0.003 && (end.deviation - 0.03 * libm::sqrtf(1.05)).abs() < 1e-6, "{end:?}");
     assert_eq!((end.verdict, end.is_learned), (Verdict::Tight, false));
     // 7 % shows in three: 3.5 · 3 % · √(1/3 + 1/20) = 6.5 %; in two it is 7.8 %.
     let mut unit = reference;
@@ -266,7 +266,7 @@ fn a_rise_of_the_friction_is_found_and_never_learned() {
     }
     let end = made(&watch, &mut unit, own, 0.2);
     assert_eq!((end.verdict, unit.strokes()), (Verdict::Tight, 3));
-    assert!((end.deviation - 0.03 * (1.0 + 1.0 / 3.0f32).sqrt()).abs() < 1e-6);
+    assert!((end.deviation - 0.03 * libm::sqrtf(1.0 + 1.0 / 3.0)).abs() < 1e-6);
     let end = made(&watch, &mut unit, own, 0.0);
     assert_eq!((end.verdict, end.is_learned), (Verdict::Free, true));
 }
@@ -304,7 +304,7 @@ fn wear_has_a_slope_and_an_end() {
     let line = unit.drift().trend().line(0.03).unwrap();
     assert!((line.slope / 0.001 - 1.0).abs() < 0.01 && (line.rise / 0.04 - 1.0).abs() < 0.01, "{line:?}");
     // Least squares over 40 strokes, all but equally weighted: σ·√(12/n³) = 0.41 ‰.
-    let expected = 0.03 * (12.0 / 40.0f32.powi(3)).sqrt();
+    let expected = 0.03 * libm::sqrtf(12.0 / (40.0 * 40.0 * 40.0));
     assert!((line.deviation / expected - 1.0).abs() < 0.1, "{line:?} {expected}");
     let [likely, soonest] = line.strokes_until(0.2);
     assert!((likely - 160.0).abs() < 3.0 && soonest < likely, "{likely} {soonest}");
@@ -368,7 +368,7 @@ fn jams_dead_sensors_and_the_end_are_told() {
                 let stopped = Sample { speed: 0.0, ..good(i) };
                 if i < 300 {
                     good(i)
-                } else if i % 2 == 0 {
+                } else if i.is_multiple_of(2) {
                     without(dead, stopped)
                 } else {
                     stopped
