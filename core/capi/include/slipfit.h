@@ -728,7 +728,7 @@ slipfit_status slipfit_watch_finish(const struct slipfit_watch *storage,
                                     struct slipfit_unit *unit,
                                     struct slipfit_stroke_end *end);
 
-// How the friction of `*unit` changes over its strokes. SLIPFIT_UNIT_STROKES before the third stroke after its reference of ten.
+// How the friction of `*unit` changes over its strokes. SLIPFIT_UNIT_STROKES before the third stroke after its reference of twenty.
 //
 // # Safety
 // As for slipfit_watch_step; nobody else uses `*wear` meanwhile.
