@@ -22,6 +22,7 @@ mod drift;
 mod error;
 mod record;
 mod saved;
+mod step;
 mod stroke;
 #[cfg(test)]
 mod tests;

@@ -64,7 +64,7 @@ impl<'a, V: Nodes> Watch<'a, V> {
     pub fn finish(&self, unit: &mut Unit, stroke: &Stroke) -> StrokeEnd {
         let record = self.production.record();
         let places = self.production.places();
-        let is_whole = stroke.is_whole() && stroke.reached() >= places.last() - GAP_NODES * places.step();
+        let is_whole = stroke.is_whole && stroke.at >= places.last() - GAP_NODES * places.step();
         let worst = match stroke.worst() {
             Verdict::Jam | Verdict::Tight => stroke.worst(),
             _ if !is_whole => Verdict::NoData,
@@ -80,7 +80,7 @@ impl<'a, V: Nodes> Watch<'a, V> {
         let change = match record.response + added {
             // The friction of such a unit cannot be told by its force.
             response if response.abs() < 0.1 * record.response.abs() || response == 0.0 => None,
-            response => unit.drift.add(stroke.weighted(), [response, record.deviation], self.drift, is_suspect),
+            response => unit.drift.add(stroke.weighted, [response, record.deviation], self.drift, is_suspect),
         };
         let Change { rise, deviation } = change.unwrap_or(Change { rise: 0.0, deviation: f32::INFINITY });
         let has_risen = rise > self.drift * deviation;
@@ -94,13 +94,13 @@ impl<'a, V: Nodes> Watch<'a, V> {
 
     /// The coefficients of the modes that a whole `stroke` has.
     pub fn coefficients(&self, stroke: &Stroke) -> [f32; MODES_MOST] {
-        let pairs = || stroke.sums().iter().zip(self.production.record().norms);
+        let pairs = || stroke.sums.iter().zip(self.production.record().norms);
         core::array::from_fn(|k| pairs().nth(k).map_or(0.0, |(sum, norm)| if norm > 0.0 { sum / norm } else { 0.0 }))
     }
 
     /// The weighted force of a `stroke`, which rises with its friction by the response of the record.
     pub fn weighted(&self, stroke: &Stroke) -> f32 {
-        stroke.weighted()
+        stroke.weighted
     }
 }
 
