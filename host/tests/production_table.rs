@@ -6,11 +6,7 @@ use slipfit::{
     dynamics::{driven::Driven as _, outcome::Verdict},
     firmware::production_table::{Over, ProductionTable, Wish, make},
     mechanism::{ByDrive, Mechanism},
-    population::{
-        production::Production,
-        strokes::{Stroke, Strokes},
-        subject::Subject,
-    },
+    population::{production::Production, stroke::Stroke, strokes::Strokes, subject::Subject},
     scene::{SceneFile, shipped},
     setup::Scene,
     system::parallel,

@@ -1,5 +1,6 @@
 //! `slipfit table`: the flash table.
 
+mod axis;
 mod production;
 mod words;
 
@@ -7,7 +8,6 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use slipfit_core::table::AxisKind;
 use slipfit_system::files;
 
 use super::{
@@ -22,20 +22,22 @@ use crate::{
     dynamics::driven::{DriveKind, Driven},
     firmware::{
         flash::{
-            AxisSpec, TABLE_ADDRESS,
+            TABLE_ADDRESS,
             export::{EXTENSIONS, ExportError, render},
         },
         force_table::{
             self, Demand, ForceTable,
             position::{self, PositionTable, Reach, Wish},
         },
+        production_table,
     },
     scene::parse_levels,
     setup::LevelRange,
     show::force_table::picture,
 };
 
-use production::ProductionArguments;
+use axis::AxisReport;
+use production::{Output, ProductionArguments};
 pub(super) use words::coarse;
 use words::{describe, describe_short};
 
@@ -124,26 +126,6 @@ struct Report {
     warnings: Vec<String>,
 }
 
-#[derive(Serialize)]
-struct AxisReport {
-    kind: &'static str,
-    unit: &'static str,
-    first: f32,
-    step: f32,
-    count: usize,
-}
-
-impl AxisReport {
-    fn new(drive: DriveKind, &AxisSpec { kind, first, step, count }: &AxisSpec) -> Self {
-        let unit = match kind {
-            AxisKind::Position => drive.choose(kind.unit(), "rad"),
-            AxisKind::Velocity => drive.choose(kind.unit(), "rad/s"),
-            AxisKind::Level | AxisKind::Time | AxisKind::Row => kind.unit(),
-        };
-        Self { kind: kind.name(), unit, first, step, count }
-    }
-}
-
 impl Arguments {
     pub fn run(&self) -> Result<(), Failure> {
         if self.production.production {
@@ -169,6 +151,28 @@ impl Arguments {
                 self.make(&driven, warnings)
             }
         }
+    }
+
+    fn of_production(&self) -> Result<(), Failure> {
+        let given = [
+            ("--speeds", self.speeds.is_some()),
+            ("--end", self.end.is_some()),
+            ("--max-error", self.max_error.is_some()),
+            ("--plot", self.plot.is_some()),
+            ("--n", self.levels.overrides().is_some()),
+        ];
+        if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+            return Err(Failure::Input(format!("{option} has no effect on a table of the production")));
+        }
+        let over = match self.over {
+            Over::Time => production_table::Over::Time,
+            Over::Position => production_table::Over::Position,
+            Over::PositionAndSpeed => {
+                return Err(Failure::Input("--production is over time or position, not position,speed".into()));
+            }
+        };
+        let Self { scene, drive, threads, output, .. } = self;
+        self.production.make(&Output { scene, drive, threads, output, over })
     }
 
     fn make(&self, driven: &dyn Driven, mut warnings: Vec<String>) -> Result<(), Failure> {

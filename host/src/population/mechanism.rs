@@ -5,7 +5,7 @@ use slipfit_system::{interrupt, parallel};
 use super::{
     Unit, UnitOutcome,
     production::Drawn,
-    strokes::Stroke,
+    stroke::Stroke,
     subject::Subject,
     unit::{Decisive, Fault, is_near_a_limit},
 };

@@ -19,6 +19,7 @@ pub mod simulation;
 pub mod slide;
 mod source;
 pub mod statistics;
+pub mod stroke;
 pub mod strokes;
 pub mod study;
 pub mod subject;

@@ -8,7 +8,7 @@ use slipfit_desk::population::{Course, Figures, simulate as simulate_lanes};
 
 use super::{
     production::Drawn,
-    strokes::{self, Stroke},
+    stroke::{self, Stroke},
     subject::Subject,
     unit::{Decisive, Fault, Unit, UnitOutcome, is_near_a_limit},
 };
@@ -42,7 +42,7 @@ impl Subject for Scene {
     fn stroke(&self, drawn: &Drawn, i: usize, friction: f64, every: f64) -> Result<Stroke, SimulateError> {
         let mut own = scene_of(self, drawn, i);
         SlideParameter::Friction.change(&mut own, &mut |coefficient| coefficient * (1.0 + friction));
-        let settings = Settings::desk(&own, every).to(desk::tolerance_of(&own, own.run.error.max(strokes::ERROR)));
+        let settings = Settings::desk(&own, every).to(desk::tolerance_of(&own, own.run.error.max(stroke::ERROR)));
         let Run { outcome, trajectory, .. } = simulate(&own, &drawn.gaps[i], &settings)?;
         Ok(Stroke { outcome, trajectory })
     }

@@ -7,37 +7,14 @@ use slipfit_core::sampling::{
 };
 use slipfit_system::{interrupt, parallel};
 
-use super::{production::Production, subject::Subject};
-use crate::dynamics::{
-    outcome::{Outcome, Verdict},
-    simulate::SimulateError,
-    trajectory::Trajectory,
-};
-
-/// Error of the drive's force that a step of a slide may make, as a share of its greatest force, unless the scene allows more.
-pub const ERROR: f64 = 1e-5;
+use super::{production::Production, stroke::Stroke, subject::Subject};
+use crate::dynamics::simulate::SimulateError;
 
 /// What seeds of the friction of strokes are derived with.
 const STREAM: u64 = 5 << 32;
 
 /// Units that one thread simulates in a row; they are drawn together.
 const TOGETHER: u64 = 64;
-
-/// One stroke of a unit.
-#[derive(Clone, Debug)]
-pub struct Stroke {
-    /// What became of it.
-    pub outcome: Outcome,
-    /// Its samples.
-    pub trajectory: Trajectory,
-}
-
-impl Stroke {
-    /// Whether it is one of a unit that does its job: it runs, to the end of the stroke where one is stated.
-    pub fn is_complete(&self) -> bool {
-        self.outcome.verdict == Verdict::Runs && self.outcome.stroke_reached != Some(false)
-    }
-}
 
 /// Which strokes of each unit are simulated, and how.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use super::{
     production::Drawn,
-    strokes::Stroke,
+    stroke::Stroke,
     unit::{Decisive, Fault, Unit},
 };
 use crate::dynamics::{driven::Driven, simulate::SimulateError};

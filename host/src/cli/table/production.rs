@@ -1,20 +1,29 @@
 //! `slipfit table --production`: what units that complete their stroke need.
 
+use std::path::Path;
+
 use clap::Args;
 use serde::Serialize;
 use slipfit_core::production::Row;
 use slipfit_system::files;
 use slipfit_tolerance::number::fixed;
 
-use super::{AxisReport, EXTENSIONS, ExportError, Over, TABLE_ADDRESS, render};
+use super::axis::AxisReport;
 use crate::{
     cli::{
+        arguments::{DriveArguments, SceneArguments, ThreadArguments},
         by_one_drive::ByOneDrive,
         failure::Failure,
         terminal::{print, print_json, progress, warn},
     },
     dynamics::driven::DriveKind,
-    firmware::production_table::{self as table, ProductionTable, Wish},
+    firmware::{
+        flash::{
+            TABLE_ADDRESS,
+            export::{EXTENSIONS, ExportError, render},
+        },
+        production_table::{self as table, ProductionTable, Wish},
+    },
 };
 
 /// What only a table of the production takes.
@@ -92,19 +101,12 @@ impl ProductionArguments {
         }
     }
 
-    fn wish(&self, over: Over) -> Result<Wish, Failure> {
+    fn wish(&self, over: table::Over) -> Result<Wish, Failure> {
         let within = |option: &str, value: f64, [least, most]: [f64; 2], unit: &str| {
             if (least..=most).contains(&value) {
                 Ok(value)
             } else {
                 Err(Failure::Input(format!("{option} is {value}, allowed is {least} to {most} {unit}")))
-            }
-        };
-        let over = match over {
-            Over::Time => table::Over::Time,
-            Over::Position => table::Over::Position,
-            Over::PositionAndSpeed => {
-                return Err(Failure::Input("--production is over time or position, not position,speed".into()));
             }
         };
         Ok(Wish {
@@ -119,27 +121,21 @@ impl ProductionArguments {
     }
 }
 
-impl super::Arguments {
-    /// Refuses what has no effect on a table of the production.
-    fn refuse_levels(&self) -> Result<(), Failure> {
-        let given = [
-            ("--speeds", self.speeds.is_some()),
-            ("--end", self.end.is_some()),
-            ("--max-error", self.max_error.is_some()),
-            ("--plot", self.plot.is_some()),
-            ("--n", self.levels.overrides().is_some()),
-        ];
-        match given.into_iter().find(|(_, is_given)| *is_given) {
-            Some((option, _)) => Err(Failure::Input(format!("{option} has no effect on a table of the production"))),
-            None => Ok(()),
-        }
-    }
+/// What a table of the production is made of, and where it goes.
+pub(super) struct Output<'a> {
+    pub scene: &'a SceneArguments,
+    pub drive: &'a DriveArguments,
+    pub threads: &'a ThreadArguments,
+    pub output: &'a Path,
+    pub over: table::Over,
+}
 
-    pub(super) fn of_production(&self) -> Result<(), Failure> {
-        self.refuse_levels()?;
-        let wish = self.production.wish(self.over)?;
-        let (moving, product) = self.scene.load_moving_with_product(&[])?;
-        let of = ByOneDrive::new(&moving, &self.drive)?;
+impl ProductionArguments {
+    /// Makes the table.
+    pub fn make(&self, Output { scene, drive, threads, output, over }: &Output<'_>) -> Result<(), Failure> {
+        let wish = self.wish(*over)?;
+        let (moving, product) = scene.load_moving_with_product(&[])?;
+        let of = ByOneDrive::new(&moving, drive)?;
         let longer = of.longer();
         let of = of.or_longer(&longer);
         let subject = of.subject();
@@ -147,25 +143,25 @@ impl super::Arguments {
             let message = "a table of the production is of a ramp to one speed, not of drive.segment";
             return Err(Failure::Input(message.into()));
         }
-        let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let extension = output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         if !EXTENSIONS.contains(&extension.as_str()) {
             return Err(Failure::Input(format!("--output: {}", ExportError::Extension { found: extension })));
         }
         table::check(&wish).map_err(|error| Failure::Input(error.to_string()))?;
-        self.scene.check_outputs(&[("--output", self.output.as_path())])?;
+        scene.check_outputs(&[("--output", *output)])?;
         let production = of.production(product.as_ref(), 0.0, wish.seed)?;
         let mut warnings = of.warnings()?;
         warnings.extend(product.iter().flat_map(|product| product.warnings.clone()));
 
         let bar = progress("simulating", table::work(&wish) as usize);
-        let made = self.threads.install(|| table::make(subject, &production, &wish, || bar.inc(1)))?;
+        let made = threads.install(|| table::make(subject, &production, &wish, || bar.inc(1)))?;
         bar.finish_and_clear();
         let made = made.map_err(anyhow::Error::from)?;
-        let stem = self.output.file_stem().unwrap_or_default().to_string_lossy();
+        let stem = output.file_stem().unwrap_or_default().to_string_lossy();
         let file = render(&stem, &extension, &made.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
-        files::write(&self.output, &file)?;
-        if !self.scene.json {
-            print(&format!("{}\n{}", self.output.display(), describe(subject.kind(), &made)))?;
+        files::write(output, &file)?;
+        if !scene.json {
+            print(&format!("{}\n{}", output.display(), describe(subject.kind(), &made)))?;
             warn(&warnings);
             return Ok(());
         }
@@ -173,7 +169,7 @@ impl super::Arguments {
         let [units, complete] = made.units;
         let [band, widest] = band(&made);
         print_json(&Report {
-            file: self.output.display().to_string(),
+            file: output.display().to_string(),
             bytes: made.bytes.len(),
             axes: made.axes.iter().map(|axis| AxisReport::new(subject.kind(), axis)).collect(),
             effort_unit: subject.kind().effort_unit(),

@@ -10,16 +10,20 @@ use slipfit_core::{
 };
 use slipfit_system::parallel;
 
-use super::{ProductionTableError, Rows, TAUGHT_UNITS, Wish, samples::Samples, tail::limits};
+use super::{
+    rows::Rows,
+    samples::Samples,
+    tail::limits,
+    wish::{ProductionTableError, Wish},
+};
 use crate::{
     dynamics::simulate::SimulateError,
     firmware::flash,
-    population::{
-        production::Production,
-        strokes::{Stroke, Strokes},
-        subject::Subject,
-    },
+    population::{production::Production, stroke::Stroke, strokes::Strokes, subject::Subject},
 };
+
+/// Units that are taught, for the limits of taught units.
+pub const TAUGHT_UNITS: usize = 3000;
 
 /// Strokes of a unit that is taught: those that it learns from, and as many that it is judged by.
 pub const STROKES: u64 = 6;

@@ -6,55 +6,30 @@
 
 mod calibration;
 mod modes;
+mod rows;
 mod samples;
 mod tail;
+mod wish;
 
 use slipfit_core::{
     production::{MODES_MOST, Production as Reader, Record, Row},
     table::{
-        AxisKind, Encoding, MotionVerdict,
+        Encoding,
         layout::{CHECKSUM_SIZE, PRODUCTION_SIZE},
     },
 };
-use thiserror::Error;
 
 use self::{
     calibration::{Calibration, Learned},
-    modes::{Grid, Modes},
+    modes::Grid,
+    rows::Rows,
     samples::Samples,
 };
-use super::flash::{self, AxisSpec, ChannelSpec, FlashError, TableSpec};
-use crate::{
-    dynamics::simulate::SimulateError,
-    population::{production::Production, strokes::Strokes, subject::Subject},
-};
+use super::flash::{self, AxisSpec};
+use crate::population::{production::Production, strokes::Strokes, subject::Subject};
 
 pub use samples::Over;
-
-/// Units that are taught, for the limits of taught units.
-const TAUGHT_UNITS: usize = 3000;
-
-/// The fewest units that complete their stroke of which there is a table.
-pub const UNITS_LEAST: usize = 100;
-
-/// What a table of a production is to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wish {
-    /// What it is over.
-    pub over: Over,
-    /// Units to simulate.
-    pub units: u64,
-    /// Seed of the friction of strokes and of the noise.
-    pub seed: u64,
-    /// Standard deviation of the white noise of a measured force, as a share of the greatest mean force.
-    pub noise: f64,
-    /// Standard deviation of the friction of a unit from stroke to stroke, as a share of it.
-    pub friction: f64,
-    /// Interval (s) of the controller's samples.
-    pub period: f64,
-    /// Its greatest size (bytes).
-    pub bytes: usize,
-}
+pub use wish::{ProductionTableError, UNITS_LEAST, Wish};
 
 /// A table of a production, and what there is to say of it.
 #[derive(Clone, Debug)]
@@ -78,43 +53,6 @@ pub struct ProductionTable {
     pub noise: f64,
     /// Places, the mean force (N) there, and by how much the band is above and below it (N).
     pub band: Vec<[f64; 4]>,
-}
-
-/// Why there is no table of a production.
-#[derive(Debug, Error)]
-pub enum ProductionTableError {
-    /// Too few units complete their stroke.
-    #[error(
-        "{complete} of {units} units complete their stroke; a table of the production takes at least {UNITS_LEAST}"
-    )]
-    TooFew {
-        /// How many complete it.
-        complete: usize,
-        /// How many were simulated.
-        units: u64,
-    },
-    /// The strokes are over before there is anything to tell.
-    #[error("the strokes are over at {end}, before the drive has started at {start}")]
-    TooShort {
-        /// Where the drive starts (s, m).
-        start: f64,
-        /// Where the shortest stroke is over.
-        end: f64,
-    },
-    /// Too small.
-    #[error("--bytes is {bytes}, the rows of a production take at least {least}")]
-    Bytes {
-        /// The size asked for.
-        bytes: usize,
-        /// The least.
-        least: usize,
-    },
-    /// It has no place in the format.
-    #[error(transparent)]
-    Flash(#[from] FlashError),
-    /// A run failed.
-    #[error(transparent)]
-    Simulate(#[from] SimulateError),
 }
 
 /// Nodes of the shortest table.
@@ -144,7 +82,7 @@ pub fn check(wish: &Wish) -> Result<(), ProductionTableError> {
 
 /// How often `make` calls `done`, at most.
 pub fn work(wish: &Wish) -> u64 {
-    wish.units + wish.units.min(TAUGHT_UNITS as u64) + wish.units.min(calibration::MARGIN_UNITS)
+    wish.units + wish.units.min(calibration::TAUGHT_UNITS as u64) + wish.units.min(calibration::MARGIN_UNITS)
 }
 
 /// Makes the table of the `production` of `subject` that is wished for; `done` is called after each unit.
@@ -237,98 +175,4 @@ pub fn make(
         noise,
         band,
     })
-}
-
-/// Mean and modes on a grid, and how well they show the strokes that they are made of.
-struct Rows {
-    grid: Grid,
-    kind: AxisKind,
-    modes: Modes,
-    /// Root mean square (N) of what they leave.
-    fit: f64,
-}
-
-impl Rows {
-    fn of(grid: Grid, over: Over, firsts: &[Samples], count: usize) -> Self {
-        let places = grid.places();
-        let of = |values: fn(&Samples) -> &[f32]| -> Vec<Vec<f64>> {
-            firsts.iter().map(|samples| samples.at_places(values(samples), &places)).collect()
-        };
-        let (forces, speeds) = (of(|samples| &samples.force), of(|samples| &samples.speed));
-        let modes = Modes::of(&grid, &forces, &speeds, count);
-        let kind = match over {
-            Over::Time => AxisKind::Time,
-            Over::Position => AxisKind::Position,
-        };
-        let mut rows = Self { grid, kind, modes, fit: 0.0 };
-        rows.fit = rows.left(firsts);
-        rows
-    }
-
-    /// Root mean square (N) of what mean and modes that fit each stroke best leave of it, at its own samples.
-    fn left(&self, firsts: &[Samples]) -> f64 {
-        let last = self.grid.first + self.grid.step * (self.grid.count - 1) as f64;
-        let (mut squares, mut lengths) = (0.0, 0.0);
-        // A part of them will do.
-        for samples in firsts.iter().step_by(firsts.len().div_ceil(500)) {
-            let inside = |at: f64| at >= self.grid.first && at <= last;
-            let mut pieces = Vec::new();
-            let mut sums = vec![0.0; self.modes.modes.len()];
-            for (k, pair) in samples.at.windows(2).enumerate() {
-                let [from, to] = [f64::from(pair[0]), f64::from(pair[1])];
-                if to > from && inside(from) && inside(to) {
-                    let values = self.values(to);
-                    let above = f64::from(samples.force[k + 1]) - values.0;
-                    for (sum, mode) in sums.iter_mut().zip(&values.1) {
-                        *sum += above * mode * (to - from);
-                    }
-                    pieces.push((to - from, above, values.1));
-                }
-            }
-            for (length, above, modes) in pieces {
-                let fitted: f64 = modes.iter().zip(&sums).zip(&self.modes.norms).map(|((m, s), n)| m * s / n).sum();
-                squares += length * (above - fitted) * (above - fitted);
-                lengths += length;
-            }
-        }
-        libm::sqrt(squares / f64::max(lengths, f64::MIN_POSITIVE))
-    }
-
-    /// Mean and modes at `at`.
-    fn values(&self, at: f64) -> (f64, Vec<f64>) {
-        let steps = ((at - self.grid.first) / self.grid.step).clamp(0.0, (self.grid.count - 1) as f64);
-        let node = (steps as usize).min(self.grid.count.saturating_sub(2));
-        let part = steps - node as f64;
-        let value = |row: &[f64]| row[node] + part * (row[node + 1] - row[node]);
-        (value(&self.modes.mean[0]), self.modes.modes.iter().map(|[force, _]| value(force)).collect())
-    }
-
-    /// The table with these widths, weights and record.
-    fn spec(&self, hash: u64, widths: [Vec<f64>; 3], weight: Vec<f64>, record: Record) -> TableSpec {
-        let zeros = vec![0.0; self.grid.count];
-        let [mean, speed] = &self.modes.mean;
-        let [above, below, taught] = &widths;
-        let forces =
-            [mean, above, below, taught, &weight].into_iter().chain(self.modes.modes.iter().map(|[force, _]| force));
-        let speeds =
-            [speed, &zeros, &zeros, &zeros, &zeros].into_iter().chain(self.modes.modes.iter().map(|[_, speed]| speed));
-        let values = |rows: Vec<&Vec<f64>>| rows.into_iter().flatten().map(|x| *x as f32).collect::<Vec<f32>>();
-        let channel =
-            |values: Vec<f32>, error: f64| ChannelSpec { values, worst_error: error as f32, rms_error: error as f32 };
-        let rows = Row::Mode as usize + self.modes.modes.len();
-        let axis =
-            |kind, first: f64, step: f64, count| AxisSpec { kind, first: first as f32, step: step as f32, count };
-        TableSpec {
-            scene_hash: hash,
-            axes: vec![
-                axis(AxisKind::Row, 0.0, 1.0, rows),
-                axis(self.kind, self.grid.first, self.grid.step, self.grid.count),
-            ],
-            encoding: Encoding::I16,
-            force: channel(values(forces.collect()), f64::from(record.residual)),
-            velocity: channel(values(speeds.collect()), 0.0),
-            verdicts: vec![MotionVerdict::Runs; rows],
-            production: Some(record),
-        }
-    }
 }

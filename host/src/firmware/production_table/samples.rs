@@ -1,6 +1,6 @@
 //! A stroke as a table of a production sees it: force and speed by time, or by how far it has come.
 
-use crate::population::strokes::Stroke;
+use crate::population::stroke::Stroke;
 
 /// What such a table is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
