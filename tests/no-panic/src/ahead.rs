@@ -1,5 +1,5 @@
-//! As the other image, for predicting the slide ahead of the clock and for bodies in space on ideal joints: all together would not fit
-//! the flash.
+//! As the other image, for predicting the slide ahead of the clock, for bodies in space on ideal joints and for tables of a production:
+//! all together would not fit the flash.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -19,6 +19,8 @@ mod uses {
         ahead::{Ahead, Limits, State},
         law::{Impact, Regularised, ThreeHalves},
         pose::Pose,
+        production::{self, Production, SAVED_SIZE, Unit},
+        table::{AxisKind, TableError},
     };
     use slipfit_problems::{cd_rom, mechanisms::ball_rod};
 
@@ -26,12 +28,33 @@ mod uses {
     pub fn all() {
         let _ = black_box(predict());
         let _ = black_box(on_joints());
+        static REGION: [u8; 256] = [0; 256];
+        let _ = black_box(production(black_box(&REGION)));
     }
 
     /// Makes and steps the shipped mechanism in space that has ideal joints.
     fn on_joints() -> Result<(), ParameterError<f32>> {
         let (kernel, mut state) = black_box(ball_rod::predictor(black_box(0.0))?);
         let _ = black_box(kernel.step(&mut state));
+        Ok(())
+    }
+
+    /// Watches a unit by a table of its production, and saves what is known of it.
+    fn production(region: &[u8]) -> Result<(), TableError> {
+        let production =
+            Production::open(region)?.expect_over(black_box(AxisKind::Time))?.expect_scene(black_box(0))?;
+        black_box((production.band(black_box(0.0)), production.row(black_box(0), black_box(0.0))));
+        let mut unit = Unit::from_bytes(black_box(&[0; SAVED_SIZE]), black_box(0)).unwrap_or_default();
+        if let Ok(watch) = production::Watch::new(production, black_box(1e-3)) {
+            let mut stroke = watch.start();
+            let sample = black_box(production::Sample { at: 0.0, force: 0.0, speed: 0.0, command: 0.0 });
+            let _ = black_box(watch.step(&unit, &mut stroke, &sample));
+            let _ = black_box(watch.finish(&mut unit, &stroke));
+        }
+        if let Some(line) = unit.drift().trend().line(black_box(0.03)) {
+            black_box(line.strokes_until(black_box(0.1)));
+        }
+        black_box(unit.to_bytes(black_box(0)));
         Ok(())
     }
 

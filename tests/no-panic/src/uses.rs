@@ -10,7 +10,6 @@ use slipfit_core::{
     menu::SlideVisitor,
     monitor::{JamWatch, LevelBank, Limits, Monitor, Sample, Watch},
     pose::Pose,
-    production::{self, Production, SAVED_SIZE, Unit},
     slide::Slide,
     system::{
         Element, System,
@@ -112,24 +111,6 @@ fn look_up() -> Result<(), TableError> {
     black_box(word.record(black_box(0)).bytes());
     black_box(Scrubber::new(slots.newest()?).check(region, black_box(64)))?;
     watch(&plane);
-    production(region)
-}
-
-/// Watches a unit by a table of its production, and saves what is known of it.
-fn production(region: &[u8]) -> Result<(), TableError> {
-    let production = Production::open(region)?.expect_over(black_box(AxisKind::Time))?.expect_scene(black_box(0))?;
-    black_box((production.band(black_box(0.0)), production.row(black_box(0), black_box(0.0))));
-    let mut unit = Unit::from_bytes(black_box(&[0; SAVED_SIZE]), black_box(0)).unwrap_or_default();
-    if let Ok(watch) = production::Watch::new(production, black_box(1e-3)) {
-        let mut stroke = watch.start();
-        let sample = black_box(production::Sample { at: 0.0, force: 0.0, speed: 0.0, command: 0.0 });
-        let _ = black_box(watch.step(&unit, &mut stroke, &sample));
-        let _ = black_box(watch.finish(&mut unit, &stroke));
-    }
-    if let Some(line) = unit.drift().trend().line(black_box(0.03)) {
-        black_box(line.strokes_until(black_box(0.1)));
-    }
-    black_box(unit.to_bytes(black_box(0)));
     Ok(())
 }
 
