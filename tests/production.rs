@@ -56,7 +56,6 @@ fn image_and_host_see_the_same_bits() {
     );
     let is_count = |line: &&str| line.starts_with("instructions of ") || line.starts_with("stack of ");
     let target: Vec<&str> = ON_TARGET.lines().filter(|line| !is_count(line)).collect();
-    // Sizes differ with the width of an address.
     assert_eq!(host.lines().collect::<Vec<_>>(), target);
     let strokes: Vec<&str> = target.iter().filter(|line| line.starts_with("stroke ")).copied().collect();
     assert_eq!(strokes.len(), 16);

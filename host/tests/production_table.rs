@@ -189,7 +189,8 @@ impl Judge<'_> {
     }
 
     /// In what shares of the units a rise of the friction is found within three strokes, after a reference of twenty and two more: by the
-    /// watch, and by one that knows the friction of every stroke but for what it differs by from stroke to stroke.
+    /// watch, and by a detector that knows the unit: the mean of its frictions since the rise, beside what they differ by from stroke to
+    /// stroke.
     fn power(&self, units: std::ops::Range<u64>, rise: f64, rate: f32) -> [f64; 2] {
         let watch = self.watch(rate);
         let plan = Strokes { seed: SEED, numbers: 0..25, friction: 0.03, every: PERIOD };
@@ -221,7 +222,7 @@ impl Judge<'_> {
         [0, 1].map(|k| found.iter().filter(|each| each[k]).count() as f64 / found.len() as f64)
     }
 
-    /// How long (s) after a drive was stopped by force a jam is told, at worst of the `units`.
+    /// How long (s) after a drive was stopped by force the watch reports a jam, at worst of the `units`.
     fn jam(&self, units: std::ops::Range<u64>, times: &[f64]) -> f64 {
         let watch = self.watch(1e-3);
         let mut worst = 0.0f64;
@@ -256,6 +257,7 @@ fn likely(share: f64, count: usize) -> [f64; 2] {
     [mean - reach, mean + reach]
 }
 
+/// Whether so many are `found`.
 fn is_likely(share: f64, found: usize, count: usize) -> bool {
     let [least, most] = likely(share, count);
     (least..=most).contains(&(found as f64))
@@ -291,11 +293,13 @@ fn ten_thousand_units_of_the_slide_by_a_table_of_ten_thousand_others() {
     let powers = [0.2, 0.1].map(|rise| judge.power(30_000..30_600, rise, 1e-3));
     println!("rises of 20 and 10 %, found and by who knows: {powers:?}");
     let jam = judge.jam(10_000..10_040, &[0.35, 0.6, 0.77, 1.0, 1.3]);
-    println!("a jam is told after {jam:.4} s");
+    println!("a jam is reported after {jam:.4} s");
 
     assert!(is_likely(1e-3, taught.alarms, taught.strokes), "{} {}", taught.alarms, taught.strokes);
     assert!((0.987..=0.993).contains(&band), "{band}");
-    assert!(mean <= 0.105 && own <= 0.032 && within <= 0.030, "{mean} {own}");
+    // Before the stroke 0.030 N were asked for: 0.0303 N are left, of which the stroke's own friction, which nothing before it tells, is
+    // the greater part. Within the stroke it is known.
+    assert!(mean <= 0.105 && own <= 0.0305 && within <= 0.030, "{mean} {own} {within}");
     for [found, known] in powers {
         assert!(found >= 0.9 * known, "{found} {known}");
     }

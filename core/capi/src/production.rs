@@ -2,17 +2,17 @@
 
 use slipfit_core::{
     production::{Production, ProductionError, Sample, SavedError, Stroke, Unit, Watch},
-    table::{AnyNodes, AxisKind},
+    table::AnyNodes,
 };
 
 use crate::{
     border::{Storage, bytes, input, make, object, object_mut, output},
     monitor::code,
     status::{
-        Refusal, SLIPFIT_PARAMETER, SLIPFIT_UNIT_CHECKSUM, SLIPFIT_UNIT_MAGIC, SLIPFIT_UNIT_SCENE,
+        Refusal, SLIPFIT_TABLE_VALUE, SLIPFIT_UNIT_CHECKSUM, SLIPFIT_UNIT_MAGIC, SLIPFIT_UNIT_SCENE,
         SLIPFIT_UNIT_STROKES, slipfit_status, status,
     },
-    table::{SLIPFIT_AXIS_POSITION, SLIPFIT_AXIS_TIME},
+    table::axes,
 };
 
 /// Size of a saved unit (bytes).
@@ -153,11 +153,7 @@ pub unsafe extern "C" fn slipfit_watch_init(
     // SAFETY: the caller's promise.
     status(|| unsafe {
         make(storage, || {
-            let over = match over {
-                SLIPFIT_AXIS_TIME => AxisKind::Time,
-                SLIPFIT_AXIS_POSITION => AxisKind::Position,
-                _ => return Err(Refusal(SLIPFIT_PARAMETER)),
-            };
+            let [_, over] = axes(over)?;
             let production = Production::open(bytes(region, length)?)?.expect_over(over)?.expect_scene(scene_hash)?;
             let watch = Watch::new(production, rate)?;
             Ok(Watching { watch, stroke: watch.start() })
@@ -210,7 +206,7 @@ pub unsafe extern "C" fn slipfit_watch_step(
             })
         })
     });
-    if is_damaged { crate::status::SLIPFIT_TABLE_VALUE } else { done }
+    if is_damaged { SLIPFIT_TABLE_VALUE } else { done }
 }
 
 /// What the stroke says as a whole, after its last sample, and what `*unit` learns from it. Call it once a stroke, then

@@ -3,7 +3,7 @@
 use super::{Limits, Sample, Verdict};
 
 /// The part of the command below which a slide stands.
-const STANDING: f32 = 0.1;
+pub const STANDING: f32 = 0.1;
 
 /// What decides about a jam; it needs no table. A motion starts with a fresh one.
 ///

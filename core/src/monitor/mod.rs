@@ -28,9 +28,10 @@ use crate::{
 };
 
 pub use error::MonitorError;
-pub use jam::JamWatch;
+pub use jam::{JamWatch, STANDING};
 pub use level::{BankError, Estimate, LevelBank};
 pub use limits::Limits;
+pub(crate) use sample::FORCE_MOST;
 pub use sample::{Sample, Verdict};
 use tight::Band;
 pub use tight::{TightWatch, Tightness};

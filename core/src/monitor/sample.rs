@@ -16,7 +16,7 @@ pub struct Sample {
 }
 
 /// The greatest force (N), either sign, that counts as measured.
-pub(super) const FORCE_MOST: f32 = 1e9;
+pub(crate) const FORCE_MOST: f32 = 1e9;
 
 impl Sample {
     /// The force (N); none if it is not finite or exceeds 10⁹ N, which nothing measures.

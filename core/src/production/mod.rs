@@ -29,10 +29,11 @@ mod tests;
 mod unit;
 mod watch;
 
-pub use drift::{Drift, Trend};
+pub use drift::{Drift, Line, Trend};
 pub use error::ProductionError;
 pub use record::{MODES_MOST, RATES, Record};
 pub use saved::{SAVED_SIZE, SavedError};
+pub use step::HOLD;
 pub use stroke::{Report, Sample, Stroke};
 pub use unit::Unit;
 pub use watch::{RATE_LEAST, RATE_MOST, StrokeEnd, Watch};

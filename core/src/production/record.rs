@@ -8,8 +8,11 @@ use crate::table::{
 /// The most modes of a production.
 pub const MODES_MOST: usize = 8;
 
-/// False-alarm rates that limits are stored for: 10⁻², 10⁻³, 10⁻⁴, 10⁻⁵, 10⁻⁶ in a stroke.
-pub const RATES: usize = 5;
+/// Rates of false alarms in a stroke that limits are stored for, a decade apart.
+pub const RATES: [f32; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+
+/// The part of the mean unit's response below which the force of a unit does not show its friction.
+const RESPONSE_LEAST: f32 = 0.1;
 
 /// The record of a production. Places are on the table's second axis: s, or m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,12 +32,12 @@ pub struct Record {
     /// Widths about the mean within which 99 % of their strokes stay all along.
     pub band: f32,
     /// Widths, with three standard deviations of what smoothing leaves of the noise, by which the smoothed force of a unit that is
-    /// not taught exceeds the mean in these shares of the strokes: 10⁻², 10⁻³, 10⁻⁴, 10⁻⁵, 10⁻⁶.
-    pub untaught: [f32; RATES],
+    /// not taught exceeds the mean in the shares [`RATES`] of the strokes.
+    pub untaught: [f32; RATES.len()],
     /// The same of taught units and what is expected of them, in three tenths of these shares.
-    pub taught: [f32; RATES],
+    pub taught: [f32; RATES.len()],
     /// Standard deviations by which a friction seems to rise where it does not, in seven tenths of these shares.
-    pub drift: [f32; RATES],
+    pub drift: [f32; RATES.len()],
     /// Standard deviation of the friction that one stroke tells, as a share of it.
     pub deviation: f32,
     /// Squared weight, summed over the places (N²·s or N²·m), which a stroke has to come to before half of what it tells of its friction
@@ -44,7 +47,8 @@ pub struct Record {
     pub response: f32,
     /// What a mode adds to that response.
     pub responses: [f32; MODES_MOST],
-    /// Rise of the friction, as a share of it, with which one in a hundred units does not complete its stroke any more.
+    /// Rise of the friction, as a share of it, with which one in a hundred units does not complete its stroke any more; the
+    /// greatest that was tried if fewer do not.
     pub margin: f32,
     /// Root mean square (N) of the difference of a taught unit's force from what is expected of it.
     pub residual: f32,
@@ -96,14 +100,22 @@ impl Record {
         first.into_iter().chain(limits).chain(rest).chain(last)
     }
 
+    /// What the weighted force of a stroke rises by with the friction (N·s or N·m for a rise by its own size), of the unit with these
+    /// coefficients; `None` where its force hardly depends on it.
+    pub fn response_of(&self, coefficients: &[f32; MODES_MOST]) -> Option<f32> {
+        let added: f32 = coefficients.iter().zip(self.responses).map(|(c, response)| c * response).sum();
+        let response = self.response + added;
+        (response != 0.0 && response.abs() >= RESPONSE_LEAST * self.response.abs()).then_some(response)
+    }
+
     /// This record, if all its numbers are in bounds.
     ///
     /// # Errors
-    /// [`TableError::Header`] names what is not.
+    /// [`TableError::Header`] names the first that is out of bounds.
     pub fn checked(self) -> Result<Self, TableError> {
         // NaN is in no range.
         let within = |x: f32, least: f32, most: f32| x >= least && x <= most;
-        let limits = |limits: &[f32; RATES]| limits.iter().all(|limit| within(*limit, 0.0, 1e6));
+        let limits = |limits: &[f32; RATES.len()]| limits.iter().all(|limit| within(*limit, 0.0, 1e6));
         for (name, is_good) in [
             ("start of the production", within(self.moving, -1e6, 1e6)),
             ("period of the production", within(self.period, 1e-6, 1.0)),
@@ -129,4 +141,4 @@ impl Record {
 }
 
 /// How many numbers there are, is what the layout says.
-const _: () = assert!(7 + 3 * RATES + 3 + MODES_MOST + 2 + 2 * MODES_MOST == PRODUCTION_NUMBERS);
+const _: () = assert!(7 + 3 * RATES.len() + 3 + MODES_MOST + 2 + 2 * MODES_MOST == PRODUCTION_NUMBERS);

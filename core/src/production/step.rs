@@ -2,9 +2,13 @@
 
 use super::{
     GAP_NODES, Row, Unit, Watch,
-    stroke::{FORCE_MOST, Report, Sample, Stroke},
+    stroke::{Report, Sample, Stroke},
 };
-use crate::{Scalar, monitor::Verdict, table::Nodes};
+use crate::{
+    Scalar,
+    monitor::{FORCE_MOST, STANDING, Verdict},
+    table::Nodes,
+};
 
 /// Periods over which a force is smoothed.
 const SMOOTHING: f32 = 20.0;
@@ -19,11 +23,8 @@ const NOISES: f32 = 9.0;
 const EVENT_WIDTHS: f32 = 2.0;
 const EVENT_NOISES: f32 = 3.0;
 
-/// Samples that a sign of a jam, or of a dead sensor, has to last.
-const HOLD: u32 = 10;
-
-/// The part of the command below which a drive stands.
-const STANDING: f32 = 0.1;
+/// Samples that a sign of a jam, or of a dead sensor, lasts before it is reported.
+pub const HOLD: u32 = 10;
 
 impl<V: Nodes> Watch<'_, V> {
     /// What `sample` says of a stroke of `unit`, after those before it. A sample that is not whole is passed over: after ten

@@ -1,10 +1,7 @@
 //! One stroke: what is measured, what is kept of it, and what there is to say of a sample.
 
 use super::MODES_MOST;
-use crate::monitor::Verdict;
-
-/// The greatest force (N), either sign, that counts as measured.
-pub(super) const FORCE_MOST: f32 = 1e9;
+use crate::monitor::{FORCE_MOST, Verdict};
 
 /// What the drive measures once a period. What it fails to measure is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +41,7 @@ pub struct Report {
     pub expected: f32,
     /// The force (N) that was expected before the stroke: before the unit is taught that of the mean.
     pub own: f32,
-    /// The speed (m/s) that is.
+    /// The speed (m/s) that was expected before the stroke.
     pub speed: f32,
     /// By how much (N) the smoothed force exceeds the expected one, in the direction of the command.
     pub excess: f32,

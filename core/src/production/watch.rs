@@ -4,9 +4,9 @@ use super::{GAP_NODES, MODES_MOST, Production, ProductionError, RATES, Stroke, U
 use crate::{error::bounded, monitor::Verdict, table::Nodes};
 
 /// The least rate of false alarms in a stroke.
-pub const RATE_LEAST: f32 = 1e-6;
+pub const RATE_LEAST: f32 = RATES[RATES.len() - 1];
 /// The greatest.
-pub const RATE_MOST: f32 = 1e-2;
+pub const RATE_MOST: f32 = RATES[0];
 
 /// Everything about the watch over a unit that does not change: the production, and the limits for a rate of false alarms.
 #[derive(Clone, Copy, Debug)]
@@ -75,13 +75,10 @@ impl<'a, V: Nodes> Watch<'a, V> {
             return none;
         }
         let coefficients = unit.coefficients(&record.variances);
-        let added: f32 = coefficients.iter().zip(record.responses).map(|(c, response)| c * response).sum();
         let is_suspect = worst != Verdict::Free;
-        let change = match record.response + added {
-            // The friction of such a unit cannot be told by its force.
-            response if response.abs() < 0.1 * record.response.abs() || response == 0.0 => None,
-            response => unit.drift.add(stroke.weighted, [response, record.deviation], self.drift, is_suspect),
-        };
+        let change = record
+            .response_of(&coefficients)
+            .and_then(|response| unit.drift.add(stroke.weighted, [response, record.deviation], self.drift, is_suspect));
         let Change { rise, deviation } = change.unwrap_or(Change { rise: 0.0, deviation: f32::INFINITY });
         let has_risen = rise > self.drift * deviation;
         let is_learned = !is_suspect && !has_risen && unit.strokes() < super::drift::REFERENCE;
@@ -105,7 +102,7 @@ impl<'a, V: Nodes> Watch<'a, V> {
 }
 
 /// The limit for `rate` among those for 10⁻² to 10⁻⁶, straight in between over the rate's logarithm.
-fn at(limits: &[f32; RATES], rate: f32) -> f32 {
+fn at(limits: &[f32; RATES.len()], rate: f32) -> f32 {
     let place = -libm::log10f(rate) - 2.0;
     let pairs = limits.windows(2).zip(0u8..);
     pairs.fold(limits[0], |limit, (pair, k)| {

@@ -1,6 +1,7 @@
 //! `slipfit table`: the flash table.
 
 mod axis;
+mod file;
 mod production;
 mod words;
 
@@ -21,10 +22,6 @@ use super::{
 use crate::{
     dynamics::driven::{DriveKind, Driven},
     firmware::{
-        flash::{
-            TABLE_ADDRESS,
-            export::{EXTENSIONS, ExportError, render},
-        },
         force_table::{
             self, Demand, ForceTable,
             position::{self, PositionTable, Reach, Wish},
@@ -177,10 +174,7 @@ impl Arguments {
 
     fn make(&self, driven: &dyn Driven, mut warnings: Vec<String>) -> Result<(), Failure> {
         let kind = driven.kind();
-        let extension = self.output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        if !EXTENSIONS.contains(&extension.as_str()) {
-            return Err(Failure::Input(format!("--output: {}", ExportError::Extension { found: extension })));
-        }
+        let extension = file::format_of(&self.output)?;
         if let Some(error) = self.max_error.filter(|error| !(1e-9..=1e6).contains(error)) {
             let unit = kind.effort_unit();
             return Err(Failure::Input(format!("--max-error is {error}, allowed is 1e-9 to 1e6 {unit}")));
@@ -207,9 +201,7 @@ impl Arguments {
         };
         warnings.extend(doubt);
         warnings.extend(coarse(driven, &table));
-        let stem = self.output.file_stem().unwrap_or_default().to_string_lossy();
-        let file = render(&stem, &extension, &table.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
-        files::write(&self.output, &file)?;
+        file::write(&self.output, &extension, &table.bytes)?;
         if let Some(path) = &self.plot {
             let svg = picture(kind, &table, driven.title()).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;

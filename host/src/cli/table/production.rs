@@ -4,11 +4,10 @@ use std::path::Path;
 
 use clap::Args;
 use serde::Serialize;
-use slipfit_core::production::Row;
-use slipfit_system::files;
+use slipfit_core::{production::Row, table::AxisKind};
 use slipfit_tolerance::number::fixed;
 
-use super::axis::AxisReport;
+use super::{axis::AxisReport, file};
 use crate::{
     cli::{
         arguments::{DriveArguments, SceneArguments, ThreadArguments},
@@ -17,13 +16,7 @@ use crate::{
         terminal::{print, print_json, progress, warn},
     },
     dynamics::driven::DriveKind,
-    firmware::{
-        flash::{
-            TABLE_ADDRESS,
-            export::{EXTENSIONS, ExportError, render},
-        },
-        production_table::{self as table, ProductionTable, Wish},
-    },
+    firmware::production_table::{self as table, ProductionTable, Wish},
 };
 
 /// What only a table of the production takes.
@@ -31,14 +24,14 @@ use crate::{
 pub(super) struct ProductionArguments {
     /// Makes the table of the production instead of the one over the level n.
     ///
-    /// It holds the mean force of units that complete their stroke, how units spread about it, and in which modes they differ. From a unit's
+    /// It holds the mean force of units that complete their stroke, how far units are from it, and in which modes they differ. From a unit's
     /// first strokes the controller learns its modes, and from then on knows its force.
     #[arg(long)]
     pub production: bool,
-    /// Units to simulate for a table of the production.
+    /// Units to simulate for a table of the production. If not given, 10000.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(100..=100_000))]
     units: Option<u64>,
-    /// Seed of the production.
+    /// Seed of the production. If not given, 1.
     #[arg(long)]
     seed: Option<u64>,
     /// White noise of the measured force: its standard deviation, in % of the greatest mean force.
@@ -143,10 +136,7 @@ impl ProductionArguments {
             let message = "a table of the production is of a ramp to one speed, not of drive.segment";
             return Err(Failure::Input(message.into()));
         }
-        let extension = output.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        if !EXTENSIONS.contains(&extension.as_str()) {
-            return Err(Failure::Input(format!("--output: {}", ExportError::Extension { found: extension })));
-        }
+        let extension = file::format_of(output)?;
         table::check(&wish).map_err(|error| Failure::Input(error.to_string()))?;
         scene.check_outputs(&[("--output", *output)])?;
         let production = of.production(product.as_ref(), 0.0, wish.seed)?;
@@ -157,9 +147,7 @@ impl ProductionArguments {
         let made = threads.install(|| table::make(subject, &production, &wish, || bar.inc(1)))?;
         bar.finish_and_clear();
         let made = made.map_err(anyhow::Error::from)?;
-        let stem = output.file_stem().unwrap_or_default().to_string_lossy();
-        let file = render(&stem, &extension, &made.bytes, TABLE_ADDRESS).map_err(anyhow::Error::from)?;
-        files::write(output, &file)?;
+        file::write(output, &extension, &made.bytes)?;
         if !scene.json {
             print(&format!("{}\n{}", output.display(), describe(subject.kind(), &made)))?;
             warn(&warnings);
@@ -203,7 +191,7 @@ fn band(table: &ProductionTable) -> [f64; 2] {
 fn describe(kind: DriveKind, table: &ProductionTable) -> String {
     let ([units, complete], record) = (table.units, &table.record);
     let [rows, places] = [&table.axes[0], &table.axes[1]];
-    let over_time = places.kind == slipfit_core::table::AxisKind::Time;
+    let over_time = places.kind == AxisKind::Time;
     let place = |x: f64| match over_time {
         true => fixed(x * 1e3, 0) + " ms",
         false => fixed(kind.travel(x), 2) + " " + kind.travel_unit(),
@@ -216,12 +204,17 @@ fn describe(kind: DriveKind, table: &ProductionTable) -> String {
     let friction = if record.response == 0.0 {
         String::from("Friction      none that the force would tell\n")
     } else {
+        let margin = percent(record.margin, 0);
+        let margin = if f64::from(record.margin) < table::MARGIN_MOST {
+            format!("with {margin} more friction one unit in a hundred does not complete its stroke")
+        } else {
+            format!("up to {margin} more friction fewer than one unit in a hundred do not complete their stroke")
+        };
         format!(
             "Friction      a stroke tells it to {}; it differs by {} from stroke to stroke\n\
-             Margin        with {} more friction one unit in a hundred does not complete its stroke\n",
+             Margin        {margin}\n",
             percent(record.deviation, 2),
-            percent(record.friction, 1),
-            percent(record.margin, 0)
+            percent(record.friction, 1)
         )
     };
     format!(
@@ -234,7 +227,7 @@ fn describe(kind: DriveKind, table: &ProductionTable) -> String {
          \u{20}             from mean and modes that fit it best {} {unit}\n\
          Band          {} {unit} wide in the mean over the places, {} {unit} at most, holds 99 % of the strokes\n\
          {friction}\
-         Jam           told from {} on\n\
+         Jam           reported from {} on\n\
          Limits        for {} {unit} of noise and samples every {} ms\n",
         table.bytes.len(),
         rows.count,

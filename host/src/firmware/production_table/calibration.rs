@@ -1,7 +1,8 @@
 //! The limits of a watch over the units of a production, from strokes that the controller's own code sees.
 
 use slipfit_core::{
-    production::{MODES_MOST, Production as Reader, RATES, Record, Row, Sample, Stroke as Seen, Unit, Watch},
+    monitor::STANDING,
+    production::{HOLD, Production as Reader, RATES, Record, Row, Sample, Stroke as Seen, Unit, Watch},
     sampling::{
         normal::{score, upper_score},
         stream::{Rng as _, derived, unit_stream},
@@ -11,13 +12,15 @@ use slipfit_core::{
 use slipfit_system::parallel;
 
 use super::{
+    margin::margin,
+    response::{Told, set_response, set_variances},
     rows::Rows,
     samples::Samples,
     tail::limits,
+    widths::{root_mean_square, widths},
     wish::{ProductionTableError, Wish},
 };
 use crate::{
-    dynamics::simulate::SimulateError,
     firmware::flash,
     population::{production::Production, stroke::Stroke, strokes::Strokes, subject::Subject},
 };
@@ -34,27 +37,10 @@ pub const FIRSTS: u64 = 2;
 /// Those that it learns from.
 const LEARNED: usize = 3;
 
-/// Units whose friction is raised until they do not complete their stroke.
-pub const MARGIN_UNITS: u64 = 400;
-
-/// By what shares it is raised: whole percents, up to twice itself.
-const RISES: usize = 100;
-const RISE: f64 = 0.01;
-
-/// A friction that a stroke tells no better than by this share is not told at all.
-const DEVIATION_MOST: f64 = 0.5;
-
-/// Rates of false alarms in a stroke that limits are stored for.
-const ALARMS: [f64; RATES] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
-
 /// Share of the alarms of taught units that are those of their friction; the others are those of their samples.
 const OF_FRICTION: f64 = 0.7;
 
-/// Part of the speed commanded below which a drive stands, and the samples after which a watch tells a jam.
-const STANDING: f64 = 0.1;
-const HOLD: usize = 10;
-
-/// Share of the strokes that stand for so long where a jam is told.
+/// Share of the strokes that stand for so long after the place from which a jam is reported.
 const STANDING_SHARE: f64 = 3e-4;
 
 /// Limits while they are not known: nothing exceeds them.
@@ -63,15 +49,6 @@ const NO_LIMIT: f32 = 1e6;
 /// What seeds of the noise are derived with.
 const STREAM: u64 = 6 << 32;
 
-/// Differences that this share of the strokes exceeds at a place make the width there.
-const BEYOND: f64 = 0.005;
-
-/// The part of the places over which the greatest width counts, to either side: events come sooner in one unit than in another.
-const WIDENED: f64 = 0.01;
-
-/// Widths below this part of the mean one count as that: i16 would not keep them.
-const WIDTH_LEAST: f64 = 0.05;
-
 /// Shares of a whole stroke that are tried.
 const DOUBTS: [f64; 6] = [0.003, 0.01, 0.03, 0.1, 1.0, 1e6];
 
@@ -79,7 +56,7 @@ const DOUBTS: [f64; 6] = [0.003, 0.01, 0.03, 0.1, 1.0, 1e6];
 const SMOOTHED: f64 = 0.05;
 
 /// What limits are made from.
-pub struct Learned<'a> {
+pub struct Basis<'a> {
     pub subject: &'a dyn Subject,
     pub production: &'a Production<'a>,
     pub wish: &'a Wish,
@@ -117,7 +94,7 @@ impl Draft {
     }
 }
 
-impl Learned<'_> {
+impl Basis<'_> {
     fn draft(&self, widths: &[Vec<f64>; 3], weight: &[f64], record: Record) -> Result<Draft, ProductionTableError> {
         let spec = self.rows.spec(self.subject.hash(), widths.clone(), weight.to_vec(), record);
         Ok(Draft(flash::encode(&spec)?))
@@ -134,9 +111,9 @@ impl Learned<'_> {
             friction: self.wish.friction as f32,
             completing: (self.firsts.len() as f64 / (FIRSTS * self.wish.units) as f64) as f32,
             units: self.complete.len() as f32,
-            untaught: [NO_LIMIT; RATES],
-            taught: [NO_LIMIT; RATES],
-            drift: [NO_LIMIT; RATES],
+            untaught: [NO_LIMIT; RATES.len()],
+            taught: [NO_LIMIT; RATES.len()],
+            drift: [NO_LIMIT; RATES.len()],
             deviation: 1.0,
             doubt: 1e30,
             ..Record::default()
@@ -202,7 +179,7 @@ impl Learned<'_> {
         let watch = draft.watch();
         let both: Vec<_> = units.iter().zip(&taught).collect();
         let told = parallel::map(&both, |((number, strokes), unit)| self.told(&watch, unit, *number, strokes));
-        self.set_response(&told, &mut record);
+        set_response(&told, &mut record);
 
         // Limits, as what the watch computes exceeds them.
         let draft = self.draft(&widths, &weight, record)?;
@@ -223,7 +200,7 @@ impl Learned<'_> {
             [tight, band]
         });
         let of = |k: usize| most.iter().map(|found| found[k]).collect::<Vec<f64>>();
-        record.untaught = limits(of(0), ALARMS).map(|limit| limit.max(0.0) as f32);
+        record.untaught = limits(of(0), RATES.map(f64::from)).map(|limit| limit.max(0.0) as f32);
         record.band = limits(of(1), [0.01])[0] as f32;
         let both: Vec<_> = units.iter().zip(&taught).collect();
         let most = parallel::map(&both, |((number, strokes), unit)| {
@@ -239,13 +216,14 @@ impl Learned<'_> {
             judged.collect::<Vec<[f64; 2]>>()
         });
         let of = |k: usize| most.iter().flatten().map(|found| found[k]).collect::<Vec<f64>>();
-        record.taught = limits(of(0), ALARMS.map(|rate| (1.0 - OF_FRICTION) * rate)).map(|limit| limit.max(0.0) as f32);
+        record.taught = limits(of(0), RATES.map(f64::from).map(|rate| (1.0 - OF_FRICTION) * rate))
+            .map(|limit| limit.max(0.0) as f32);
         // The last one, two or three strokes, each with a third of it. Frictions are normal from stroke to stroke; what
         // a stroke tells of them may have a longer tail.
-        let shares = ALARMS.map(|rate| OF_FRICTION * rate / 3.0);
+        let shares = RATES.map(f64::from).map(|rate| OF_FRICTION * rate / 3.0);
         let told = limits(of(1), shares);
         record.drift = std::array::from_fn(|k| upper_score::<f64>(shares[k]).max(told[k]) as f32);
-        record.margin = self.margin(&chosen, done)?;
+        record.margin = margin(self.subject, self.production, &chosen, self.wish.period, done)?;
         Ok(Calibration { widths, weight, record, differences: [from_mean, before, residual] })
     }
 
@@ -310,11 +288,11 @@ impl Learned<'_> {
     /// The place from which units move: few of the strokes stand for longer than a watch waits there or later.
     fn moving(&self) -> f32 {
         let drive = self.subject.drive();
-        let least = STANDING * drive.speed.abs();
+        let least = f64::from(STANDING) * drive.speed.abs();
         let stands = |speed: &f32| f64::from(*speed) * self.sign < least;
         let stood = |samples: &Samples| {
             let mut last = 0.0;
-            let mut count = 0;
+            let mut count = 0u32;
             for (speed, at) in samples.speed.iter().zip(&samples.at) {
                 count = if stands(speed) { count + 1 } else { 0 };
                 last = if count >= HOLD { *at } else { last };
@@ -374,131 +352,4 @@ impl Learned<'_> {
             unit
         })
     }
-
-    /// How the weighted force rises with the friction: of the mean unit, what each mode adds, and how well a stroke tells the friction.
-    fn set_response(&self, told: &[Vec<Told>], record: &mut Record) {
-        let slopes = told.iter().map(|strokes| {
-            let count = strokes.len() as f64;
-            let mean = strokes.iter().map(|(friction, ..)| friction).sum::<f64>() / count;
-            let of = |friction: f64| friction - mean;
-            let squares: f64 = strokes.iter().map(|(friction, ..)| of(*friction) * of(*friction)).sum();
-            let products: f64 = strokes.iter().map(|(friction, _, weighted)| of(*friction) * weighted).sum();
-            let coefficients: [f64; MODES_MOST] =
-                std::array::from_fn(|k| strokes.iter().map(|(_, c, _)| c[k]).sum::<f64>() / count);
-            (squares, products, coefficients)
-        });
-        // Least squares, weighted by how well each slope is known; coefficients are uncorrelated.
-        let slopes: Vec<_> = slopes.collect();
-        let whole: f64 = slopes.iter().map(|(squares, ..)| squares).sum();
-        if whole == 0.0 {
-            return;
-        }
-        let response = slopes.iter().map(|(_, products, _)| products).sum::<f64>() / whole;
-        record.response = response as f32;
-        // Of weighted forces about a straight line over the friction.
-        let (mut noise, mut count) = (0.0, 0.0);
-        for (strokes, (squares, products, _)) in told.iter().zip(&slopes) {
-            let mean = strokes.iter().map(|(.., weighted)| weighted).sum::<f64>() / strokes.len() as f64;
-            let whole: f64 = strokes.iter().map(|(.., weighted)| (weighted - mean) * (weighted - mean)).sum();
-            noise += whole - if *squares > 0.0 { products * products / squares } else { 0.0 };
-            count += strokes.len() as f64 - 2.0;
-        }
-        let noise = noise / f64::max(count, 1.0);
-        for k in 0..self.rows.modes.modes.len() {
-            let (products, squares) = slopes.iter().fold((0.0, 0.0), |(products, squares), slope| {
-                let (square, product, coefficients) = slope;
-                let c = coefficients[k];
-                (products + c * (product - response * square), squares + square * c * c)
-            });
-            // What is within three standard deviations of nothing counts as nothing.
-            let is_known = products * products > 9.0 * noise * squares;
-            record.responses[k] = if is_known { (products / squares) as f32 } else { 0.0 };
-        }
-        // About each unit's own mean, by its own response.
-        let (mut squares, mut count) = (0.0, 0.0);
-        for (strokes, (.., coefficients)) in told.iter().zip(&slopes) {
-            let own = response
-                + coefficients.iter().zip(record.responses).map(|(c, response)| c * f64::from(response)).sum::<f64>();
-            if own.abs() < 0.1 * response.abs() {
-                continue;
-            }
-            let mean = strokes.iter().map(|(.., weighted)| weighted).sum::<f64>() / strokes.len() as f64;
-            squares += strokes.iter().map(|(.., weighted)| (weighted - mean) / own).map(|x| x * x).sum::<f64>();
-            count += strokes.len() as f64 - 1.0;
-        }
-        let deviation = libm::sqrt(squares / f64::max(count, 1.0));
-        if deviation > DEVIATION_MOST {
-            (record.response, record.responses) = (0.0, [0.0; MODES_MOST]);
-        }
-        record.deviation = deviation.max(1e-9) as f32;
-    }
-
-    /// The rise of the friction with which one in a hundred units does not complete its stroke any more; the greatest that is tried if fewer do
-    /// not.
-    fn margin(&self, chosen: &[u64], done: &(impl Fn() + Sync)) -> Result<f32, ProductionTableError> {
-        let step = chosen.len().div_ceil(MARGIN_UNITS as usize);
-        let few: Vec<u64> = chosen.iter().step_by(step).copied().collect();
-        let found = parallel::try_map(&few, |number| {
-            let (drawn, i) = self.production.draw_one(*number);
-            let completes = |rise: usize| {
-                let friction = RISE * rise as f64;
-                match self.subject.stroke(&drawn, i, friction, self.wish.period.max(1e-2)) {
-                    Ok(stroke) => Ok(stroke.is_complete()),
-                    Err(interrupted @ SimulateError::Interrupted) => Err(interrupted),
-                    Err(_) => Ok(false),
-                }
-            };
-            // Half and half: what does not complete with some friction does not with more.
-            let (mut good, mut bad) = (0, RISES + 1);
-            while bad - good > 1 {
-                let middle = usize::midpoint(good, bad);
-                if completes(middle)? { good = middle } else { bad = middle }
-            }
-            done();
-            Ok::<_, SimulateError>(bad)
-        })?;
-        let mut found = found;
-        found.sort_unstable();
-        let first = found.get(found.len() / 100).copied().unwrap_or(RISES);
-        Ok((RISE * first.min(RISES) as f64) as f32)
-    }
-}
-
-/// Friction of a stroke, and the coefficients and the weighted force that the controller's code finds.
-type Told = (f64, [f64; MODES_MOST], f64);
-
-/// The variance of each coefficient from stroke to stroke of a unit.
-fn set_variances(told: &[Vec<Told>], record: &mut Record) {
-    let (mut squares, mut count) = ([0.0; MODES_MOST], 0.0);
-    for strokes in told {
-        for (k, sum) in squares.iter_mut().enumerate() {
-            let mean = strokes.iter().map(|(_, coefficients, _)| coefficients[k]).sum::<f64>() / strokes.len() as f64;
-            *sum += strokes.iter().map(|(_, c, _)| (c[k] - mean) * (c[k] - mean)).sum::<f64>();
-        }
-        count += strokes.len() as f64 - 1.0;
-    }
-    record.variances = squares.map(|sum| (sum / f64::max(count, 1.0)) as f32);
-}
-
-/// Widths at the nodes, of which `all` holds the differences (N) of each stroke: what few of them exceed there or near it in the direction
-/// of `sign`.
-fn widths(all: &[Vec<f64>], sign: f64) -> Vec<f64> {
-    let (count, strokes) = (all.first().map_or(0, Vec::len), all.len());
-    let beyond = |i: usize| {
-        let mut here: Vec<f64> = all.iter().map(|one| sign * one[i]).collect();
-        let place = ((1.0 - BEYOND) * strokes as f64) as usize;
-        here.select_nth_unstable_by(place.min(strokes - 1), f64::total_cmp).1.max(0.0)
-    };
-    let widths: Vec<f64> = (0..count).map(beyond).collect();
-    let least = WIDTH_LEAST * widths.iter().sum::<f64>() / count.max(1) as f64;
-    let reach = (WIDENED * count as f64).ceil() as usize;
-    let near =
-        |i: usize| widths[i.saturating_sub(reach)..(i + reach + 1).min(count)].iter().copied().fold(least, f64::max);
-    (0..count).map(near).collect()
-}
-
-/// The root mean square of the differences `all`.
-fn root_mean_square(all: &[Vec<f64>]) -> f64 {
-    let count = all.iter().map(Vec::len).sum::<usize>();
-    libm::sqrt(all.iter().flatten().map(|x| x * x).sum::<f64>() / count.max(1) as f64)
 }

@@ -5,22 +5,22 @@
 //! of the controller itself learns from the first three and is judged by the others, so that limits hold for what it computes.
 
 mod calibration;
+mod margin;
 mod modes;
+mod response;
 mod rows;
 mod samples;
 mod tail;
+mod widths;
 mod wish;
 
 use slipfit_core::{
     production::{MODES_MOST, Production as Reader, Record, Row},
-    table::{
-        Encoding,
-        layout::{CHECKSUM_SIZE, PRODUCTION_SIZE},
-    },
+    table::{Encoding, layout::PRODUCTION_SIZE},
 };
 
 use self::{
-    calibration::{Calibration, Learned},
+    calibration::{Basis, Calibration},
     modes::Grid,
     rows::Rows,
     samples::Samples,
@@ -28,6 +28,7 @@ use self::{
 use super::flash::{self, AxisSpec};
 use crate::population::{production::Production, strokes::Strokes, subject::Subject};
 
+pub use margin::MARGIN_MOST;
 pub use samples::Over;
 pub use wish::{ProductionTableError, UNITS_LEAST, Wish};
 
@@ -55,15 +56,18 @@ pub struct ProductionTable {
     pub band: Vec<[f64; 4]>,
 }
 
-/// Nodes of the shortest table.
-const NODES_LEAST: usize = 16;
+/// Nodes of the shortest table and of the longest one: more show no more, and their modes take minutes.
+const NODES: [usize; 2] = [16, 512];
+
+/// Size (bytes) of a table of so many modes and nodes.
+fn size(modes: usize, nodes: usize) -> usize {
+    flash::length([Row::Mode as usize + modes, nodes], Encoding::I16) + PRODUCTION_SIZE
+}
 
 /// The most nodes with which so many `modes` fit into `bytes`; none if they do not.
 fn nodes(modes: usize, bytes: usize) -> Option<usize> {
-    let rows = Row::Mode as usize + modes;
-    let fixed = flash::length([rows, 0], Encoding::I16) + PRODUCTION_SIZE;
-    let nodes = bytes.checked_sub(fixed)? / (rows * 2 * Encoding::I16.size());
-    (nodes >= NODES_LEAST).then_some(nodes.min(slipfit_core::table::layout::NODES_MOST))
+    let [least, most] = NODES;
+    (least..=most).rev().find(|nodes| size(modes, *nodes) <= bytes)
 }
 
 /// Whether a table of the size that is wished for can be, found out before any run.
@@ -71,18 +75,13 @@ fn nodes(modes: usize, bytes: usize) -> Option<usize> {
 /// # Errors
 /// [`ProductionTableError::Bytes`] if not.
 pub fn check(wish: &Wish) -> Result<(), ProductionTableError> {
-    let rows = Row::Mode as usize + 1;
-    let least =
-        flash::length([rows, 0], Encoding::I16) + PRODUCTION_SIZE + rows * 2 * Encoding::I16.size() * NODES_LEAST;
-    match nodes(1, wish.bytes) {
-        Some(_) => Ok(()),
-        None => Err(ProductionTableError::Bytes { bytes: wish.bytes, least: least + CHECKSUM_SIZE }),
-    }
+    let least = size(1, NODES[0]);
+    if wish.bytes >= least { Ok(()) } else { Err(ProductionTableError::Bytes { bytes: wish.bytes, least }) }
 }
 
 /// How often `make` calls `done`, at most.
 pub fn work(wish: &Wish) -> u64 {
-    wish.units + wish.units.min(calibration::TAUGHT_UNITS as u64) + wish.units.min(calibration::MARGIN_UNITS)
+    wish.units + wish.units.min(calibration::TAUGHT_UNITS as u64) + wish.units.min(margin::UNITS)
 }
 
 /// Makes the table of the `production` of `subject` that is wished for; `done` is called after each unit.
@@ -150,12 +149,12 @@ pub fn make(
             best = Some(rows);
         }
     }
-    let Some(rows) = best else { return Err(ProductionTableError::Bytes { bytes: wish.bytes, least: wish.bytes + 1 }) };
+    let rows = best.expect("one mode fits, as was checked");
     let greatest = rows.modes.mean[0].iter().fold(0.0f64, |most, x| most.max(x.abs()));
     let noise = wish.noise * greatest;
-    let learned =
-        Learned { subject, production, wish, noise, sign, greatest, complete: &complete, firsts: &firsts, rows: &rows };
-    let Calibration { widths, weight, record, differences } = learned.calibrated(&done)?;
+    let basis =
+        Basis { subject, production, wish, noise, sign, greatest, complete: &complete, firsts: &firsts, rows: &rows };
+    let Calibration { widths, weight, record, differences } = basis.calibrated(&done)?;
     let spec = rows.spec(subject.hash(), widths, weight, record);
     let bytes = flash::encode(&spec)?;
     let opened = Reader::open(&bytes).expect("the encoder's own table");

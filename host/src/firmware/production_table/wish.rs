@@ -41,7 +41,7 @@ pub enum ProductionTableError {
         units: u64,
     },
     /// The strokes are over before there is anything to tell.
-    #[error("the strokes are over at {end}, before the drive has started at {start}")]
+    #[error("the shortest stroke is over at {end}, before the drive has started at {start} (s, or m over position)")]
     TooShort {
         /// Where the drive starts (s, m).
         start: f64,
