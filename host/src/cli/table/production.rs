@@ -37,15 +37,15 @@ pub(super) struct ProductionArguments {
     /// White noise of the measured force: its standard deviation, in % of the greatest mean force.
     ///
     /// The limits of the controller's watch hold for this noise. If not given, 2 %.
-    #[arg(long, value_name = "PERCENT")]
+    #[arg(long, value_name = "PERCENT", allow_hyphen_values = true)]
     noise: Option<f64>,
     /// How the friction of a unit differs from stroke to stroke: its standard deviation, in % of it.
     ///
     /// If not given, 3 %.
-    #[arg(long, value_name = "PERCENT")]
+    #[arg(long, value_name = "PERCENT", allow_hyphen_values = true)]
     stroke_friction: Option<f64>,
     /// Interval of the controller's samples (ms). If not given, 1 ms.
-    #[arg(long, value_name = "MS")]
+    #[arg(long, value_name = "MS", allow_hyphen_values = true)]
     period: Option<f64>,
     /// Greatest size of the table. If not given, 16384 bytes.
     #[arg(long, value_name = "BYTES")]
