@@ -23,6 +23,7 @@ use slipfit::{
 };
 use slipfit_core::{
     ahead::{self, Ahead, Prediction},
+    drive::{Commandable as _, Led},
     integrator::ImplicitEuler,
     kernel::{Kernel, Report},
     monitor::{JamWatch, LevelBank, Limits, Monitor, Sample, Verdict, Watch},
@@ -178,26 +179,43 @@ fn hashed_bytes(bytes: impl IntoIterator<Item = u8>) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
+/// What the C program tells a drive in so many periods.
+fn command(period: u32) -> f32 {
+    let x = 2.0 * (period % 800) as f32 / 800.0;
+    let (sign, x) = if x < 1.0 { (0.08, x) } else { (-0.08, x - 1.0) };
+    sign * 4.0 * x * (1.0 - x)
+}
+
 /// The C program's prediction ahead of the clock: a hash of all that it says, and in how many periods it is behind.
 fn ahead_of_the_clock() -> (u64, u64) {
-    let limits = ahead::Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2 };
+    let limits = ahead::Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 1 };
     let scene = kernel_source::scene_data(&SCENE);
     let slower = SceneData { drive_speed: 0.05, ..scene };
-    let unit = |scene: &SceneData<f32>, n| -> Ahead<f32, CdRomSlide<f32>> {
-        let slide = cd_rom::from_data(&scene.at(n).expect("the deviations are in bounds"));
-        Ahead::new(slide, limits).expect("the limits are in bounds")
+    let unit = |scene: &SceneData<f32>, n| {
+        let slide: CdRomSlide<f32> = cd_rom::from_data(&scene.at(n).expect("the deviations are in bounds"));
+        let led = slide.driven_by(Led::led(slide.drive().gain)).expect("the gain is in bounds");
+        (Ahead::new(led, limits).expect("the limits are in bounds"), *slide.drive())
     };
-    let mut ahead = unit(&scene, 2.5);
-    let mut state: ahead::State<f32, _, 6, 256> = ahead.at_rest(Pose::nominal(), 70);
+    let (mut ahead, mut ramp) = unit(&scene, 2.5);
+    let mut state: ahead::State<f32, _, 6, 256> = ahead.at_rest(Pose::nominal(), 70, |time| ramp.command(time));
+    let horizon = ahead.horizon(&state);
     let (mut said, mut behind) = (Vec::new(), 0);
-    for period in 0..70 + 1500 {
+    for period in 0..70 + 3000 {
         if period == 70 + 750 {
-            ahead = unit(&slower, 2.25);
+            (ahead, ramp) = unit(&slower, 2.25);
             ahead.restart(&mut state);
+            ahead.plan_all(&mut state, |time| ramp.command(time));
         }
-        let Prediction { time, speed, force, lead, tolerance, excess, forced } = ahead.step(&mut state);
+        if period < 70 + 2250 {
+            let by_ramp = ramp.command(ahead.time(&state, horizon + 1));
+            ahead.plan(&mut state, horizon, if period < 70 + 1500 { by_ramp } else { command(period) });
+        } else {
+            ahead.follow(&mut state, command(period));
+        }
+        let Prediction { time, speed, position, force, deviation, lead, tolerance, excess, forced } =
+            ahead.step(&mut state);
         behind += u64::from(lead < 0.0);
-        said.extend([time, force, speed, lead, tolerance, excess, forced as f32]);
+        said.extend([time, force, speed, lead, tolerance, excess, forced as f32, position, deviation]);
     }
     (hashed(said), behind)
 }
@@ -226,6 +244,17 @@ fn in_rust() -> String {
     let (ahead, behind) = ahead_of_the_clock();
     line("ahead", ahead);
     line("behind", behind);
+    line("failed", 0);
+    let mut kernel = kernel(2.5);
+    let mut state = kernel.at_rest(Pose::nominal());
+    let commanded = (0..20_000).flat_map(|period| {
+        kernel.mechanism_mut().drive_mut().set_command(command(period));
+        let _ = kernel.step(&mut state);
+        let (time, velocity) = (kernel.time(state.steps), state.motion.velocity.z);
+        let force = kernel.mechanism().drive().force(time, velocity);
+        [time, force, velocity, state.motion.pose.displacement_w.z]
+    });
+    line("commanded", hashed(commanded));
     line("failed", 0);
 
     let table = Table::<2>::open(&TABLE).expect("its own table");
@@ -315,6 +344,8 @@ fn the_library_takes_the_recorded_flash() {
         "put_hex",
         "add",
         "predict_ahead",
+        "follow_command",
+        "command",
     ];
     let library: Vec<_> = symbols().into_iter().filter(|(name, _)| !program.contains(&name.as_str())).collect();
     let whole: u32 = library.iter().map(|(_, size)| size).sum();

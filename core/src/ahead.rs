@@ -1,7 +1,7 @@
 //! Prediction ahead of the clock: error-controlled steps in constant work a period.
 //!
-//! A prediction needs no measurement, so it need not keep step with the clock. Every period makes one attempt of RODAS3, with
-//! the step that its error estimates ask for, and accepts it or not. Where the motion is smooth a step takes up to
+//! A prediction needs no measurement, so it need not keep step with the clock. Every period makes a given number of attempts of
+//! RODAS3, each with the step that its error estimates ask for, and accepts them or not. Where the motion is smooth a step takes up to
 //! two periods, and the lead so won is spent where only short ones will do. Accepted motions go into a ring, from which a cubic
 //! reads the value at the present instant. The state decides by selects only: every period takes the same instructions.
 //!
@@ -9,10 +9,19 @@
 //! behind by a given lag nevertheless, steps are forced: of linearly implicit Euler, over a period, whatever their error. So the lag
 //! is bounded too.
 //!
+//! The command is told once a period, up to a horizon before which no step ends: what is known in advance by [`Ahead::plan`], what is
+//! not by [`Ahead::follow`], which extrapolates. So the clock may run for ever, and the command may be any.
+//!
 //! Time is counted in ticks of 2⁻²⁰ periods, so that neither a lead nor a step is ever rounded.
 
+mod command;
 mod cubic;
+mod follow;
+mod prediction;
 mod ring;
+mod setpoints;
+
+pub use prediction::{Limits, MOST_ATTEMPTS, Prediction, Status};
 
 use num_traits::AsPrimitive;
 
@@ -23,31 +32,23 @@ use crate::{
     mechanism::Driven,
 };
 
-use self::ring::{Knot, Ring, signed};
+use self::{
+    follow::Told,
+    ring::{Knot, Ring, signed},
+    setpoints::{Setpoints, TICKS, whole},
+};
 
-/// What prediction ahead of the clock is held to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits<S> {
-    /// Time from one call to the next (s).
-    pub period: S,
-    /// Error of the drive's force that a step may make (N).
-    pub tolerance: S,
-    /// The lead that is not exceeded (s).
-    pub lead: S,
-    /// The lag (s) at which steps are forced: of linearly implicit Euler, over a period, whatever their error. At a quarter, a
-    /// half and three quarters of it the tolerance grows fourfold each time.
-    pub lag: S,
-}
-
-/// Everything about a prediction that does not change. Stepping it cannot fail and takes the same instructions for every
-/// state.
+/// Everything about a prediction that does not change but the drive's command, which every step sets anew. Stepping cannot fail and
+/// takes the same instructions for every state.
 #[derive(Clone, Copy, Debug)]
 pub struct Ahead<S, M> {
     mechanism: M,
     limits: Limits<S>,
     /// Duration of a tick (s).
     tick: S,
-    /// Greatest lead and lag, in ticks.
+    /// Periods in a second (1/s).
+    rate: S,
+    /// Greatest lead and lag, in periods.
     most: [S; 2],
     /// What an error of momentum (N·s) and of its time integral (N·s²) is of the tolerance.
     weights: [S; 2],
@@ -66,6 +67,14 @@ pub struct State<S, P, const D: usize, const N: usize> {
     /// Length of the next attempt, in ticks.
     length: S,
     ring: Ring<S, P, D, N>,
+    /// The command, from the greatest lag before the present instant to a period beyond the horizon.
+    setpoints: Setpoints<S, N>,
+    /// What was told of a command that is not known in advance.
+    told: Told<S>,
+    /// See [`Prediction::deviation`].
+    deviation: S,
+    /// 1 where no setpoint that is to come has been reckoned with, else 0.
+    is_open: S,
     /// What an attempt works on, here so that the stack need not hold it.
     sums: Sums<S, D>,
     /// See [`Prediction::forced`].
@@ -73,41 +82,6 @@ pub struct State<S, P, const D: usize, const N: usize> {
     /// See [`Prediction::excess`].
     excess: S,
 }
-
-/// What a prediction says after a period.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[must_use = "its values may be older than the present instant"]
-pub struct Prediction<S> {
-    /// The time (s) that the values hold for: the clock's, or the last one known where the prediction is behind.
-    pub time: S,
-    /// Speed along the drive (m/s).
-    pub speed: S,
-    /// Force of the drive (N).
-    pub force: S,
-    /// How far beyond the clock the motion is known (s); negative where the prediction is behind.
-    pub lead: S,
-    /// The tolerance (N) that the period's attempt was held to; infinite for a forced step.
-    pub tolerance: S,
-    /// Sum of the estimated errors (N) of all steps since the start, as far as they exceed the tolerance of [`Limits`]; without forced
-    /// steps.
-    pub excess: S,
-    /// Forced steps since the start: their error is not known.
-    pub forced: u32,
-}
-
-/// Whether a prediction is of use.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Status<S> {
-    /// The value is that of the present instant; the motion is known for so long (s) beyond.
-    Ahead(S),
-    /// The value is so much (s) older than the present instant.
-    Behind(S),
-}
-
-/// Ticks of a period.
-const TICKS: u32 = 1 << 20;
 
 /// The most periods by which the clock starts before time 0.
 pub const MOST_EARLY: u32 = 1000;
@@ -141,12 +115,20 @@ const BY_LAG: [[f64; 2]; 3] = [[-0.25, 4.0], [-0.5, 4.0], [-0.75, 4.0]];
 /// Error, as a multiple of the tolerance, of an attempt whose error is not known.
 const NOT_FINITE: f64 = 1e12;
 
+/// What a state of some size leaves of the limits, in ticks.
+struct Reach<S> {
+    lead: S,
+    lag: S,
+    /// Periods from the present instant to the last one whose setpoint is known.
+    horizon: u32,
+}
+
 impl<S: Scalar + PartialOrd, M> Ahead<S, M> {
     /// Prediction of `mechanism` within `limits`.
     ///
     /// # Errors
     /// If the period is outside 1e-6…1 s, the tolerance outside 1e-9…1e6 N, the lead or the lag outside
-    /// 4…1000 periods, or one is not finite.
+    /// 4…1000 periods, one of them is not finite, or there are no attempts or more than [`MOST_ATTEMPTS`].
     pub fn new<const D: usize>(mechanism: M, limits: Limits<S>) -> Result<Self, ParameterError<S>>
     where
         M: Driven<S, D>,
@@ -155,6 +137,7 @@ impl<S: Scalar + PartialOrd, M> Ahead<S, M> {
         let tolerance = bounded("ahead.tolerance", limits.tolerance, [1e-9, 1e6])?;
         let lead = bounded("ahead.lead", limits.lead / period, [3.999, 1000.0])?;
         let lag = bounded("ahead.lag", limits.lag / period, [3.999, 1000.0])?;
+        bounded("ahead.attempts", S::from_count(limits.attempts), [1.0, f64::from(MOST_ATTEMPTS)])?;
         let ticks = S::from_count(TICKS);
         let mass = mechanism.mass();
         Ok(Self {
@@ -162,7 +145,8 @@ impl<S: Scalar + PartialOrd, M> Ahead<S, M> {
             mechanism,
             limits,
             tick: period / ticks,
-            most: [lead * ticks, lag * ticks],
+            rate: S::one() / period,
+            most: [lead, lag],
         })
     }
 }
@@ -178,15 +162,47 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         &self.limits
     }
 
-    /// At rest in `pose` at time 0, `early` periods before which the clock starts: [`MOST_EARLY`] at most, more count as so many.
-    pub fn at_rest<const D: usize, const N: usize>(&self, pose: M::Pose, early: u32) -> State<S, M::Pose, D, N>
+    /// What a state of `N` motions and 2·N setpoints holds: if less than the limits ask for, the lead and the lag are so much shorter.
+    #[inline(always)]
+    fn reach<const N: usize>(&self) -> Reach<S> {
+        // A setpoint before the lag, and six after the lead: the horizon's, what its cubic needs, and the next.
+        let room = S::from_f64(2.0 * N as f64 - 8.0);
+        let [lead, lag] = self.most;
+        let lead = lead.at_most(room - S::from_f64(4.0));
+        let lag = lag.at_most(room - lead);
+        let ticks = S::from_count(TICKS);
+        Reach { lead: lead * ticks, lag: lag * ticks, horizon: lead.as_() + 3 }
+    }
+
+    /// At rest in `pose` until time 0, `early` periods before which the clock starts: [`MOST_EARLY`] at most, more count as so many. The
+    /// `command` (m/s) by time (s) is asked for each period up to the horizon; beyond it stays what it is there, until it is told.
+    pub fn at_rest<const D: usize, const N: usize>(
+        &self,
+        pose: M::Pose,
+        early: u32,
+        command: impl FnMut(S) -> S,
+    ) -> State<S, M::Pose, D, N>
     where
         M: Driven<S, D>,
     {
         let zero = S::zero();
         let (ring, sums) = (Ring::new(pose), [Part::zero(); 2]);
-        let mut state = State { periods: 0, early: 0, clock: 0, length: zero, ring, sums, forced: 0, excess: zero };
-        self.put_at_rest(&mut state, pose, early);
+        let (setpoints, told) = (Setpoints::new(), Told::new());
+        let mut state = State {
+            periods: 0,
+            early: 0,
+            clock: 0,
+            length: zero,
+            ring,
+            setpoints,
+            told,
+            deviation: zero,
+            is_open: zero,
+            sums,
+            forced: 0,
+            excess: zero,
+        };
+        self.put_at_rest(&mut state, pose, early, command);
         state
     }
 
@@ -196,6 +212,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         state: &mut State<S, M::Pose, D, N>,
         pose: M::Pose,
         early: u32,
+        mut command: impl FnMut(S) -> S,
     ) where
         M: Driven<S, D>,
     {
@@ -204,24 +221,70 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         (state.periods, state.early) = (0, early);
         state.length = S::from_f64(FIRST);
         state.ring.put_at_rest(pose, state.clock, 0);
+        state.setpoints.fill(S::zero());
+        for periods in 0..=self.reach::<N>().horizon + 1 {
+            let time = self.time(state, periods);
+            state.setpoints.set(periods.cast_signed(), command(time));
+        }
+        (state.told, state.deviation, state.is_open) = (Told::new(), S::zero(), S::one());
         state.sums = [Part::zero(); 2];
         (state.forced, state.excess) = (0, S::zero());
     }
 
-    /// One period: the clock goes on by it, one step is attempted, and the values at the new instant are given.
+    /// The time (s) that it will be after so many more `periods`; 0 when the mechanism is released.
     #[inline(always)]
-    pub fn step<const D: usize, const N: usize>(&self, state: &mut State<S, M::Pose, D, N>) -> Prediction<S>
+    pub fn time<P, const D: usize, const N: usize>(&self, state: &State<S, P, D, N>, periods: u32) -> S {
+        let periods = S::from_count(state.periods.saturating_add(periods));
+        (periods - S::from_count(state.early)) * self.limits.period
+    }
+
+    /// One period: the clock goes on by it, steps are attempted, and the values at the new instant are given.
+    #[inline(always)]
+    pub fn step<const D: usize, const N: usize>(&mut self, state: &mut State<S, M::Pose, D, N>) -> Prediction<S>
+    where
+        M: Driven<S, D>,
+    {
+        let zero = S::zero();
+        state.periods = state.periods.saturating_add(1);
+        state.clock = state.clock.wrapping_add(TICKS);
+        state.setpoints.advance();
+        let mut tolerance = zero;
+        for _ in 0..self.limits.attempts {
+            tolerance = self.attempt(state);
+        }
+        let horizon = self.reach::<N>().horizon.cast_signed();
+        state.setpoints.set(horizon + 1, state.setpoints.at(horizon));
+
+        let ticks = state.ring.head().wrapping_sub(state.clock).cast_signed();
+        let lead = signed::<S>(ticks.cast_unsigned()) * self.tick;
+        let [speed, position] = self.motion(state, 0);
+        let deviation = zero.select_gt(lead, zero, state.deviation);
+        (state.deviation, state.is_open) = (zero, zero);
+        Prediction {
+            time: self.time(state, 0) + lead.select_gt(zero, zero, lead),
+            speed,
+            position,
+            force: self.mechanism.drive().gain * (state.setpoints.command(ticks.min(0), self.rate) - speed),
+            deviation,
+            lead,
+            tolerance,
+            excess: state.excess,
+            forced: state.forced,
+        }
+    }
+
+    /// Attempts a step. The tolerance (N) that it is held to; infinite for a forced one.
+    #[inline(always)]
+    fn attempt<const D: usize, const N: usize>(&mut self, state: &mut State<S, M::Pose, D, N>) -> S
     where
         M: Driven<S, D>,
     {
         let (zero, one) = (S::zero(), S::one());
-        state.periods = state.periods.saturating_add(1);
-        state.clock = state.clock.wrapping_add(TICKS);
         let clock = state.clock;
-        let now = (S::from_count(state.periods) - S::from_count(state.early)) * self.limits.period;
-
-        let lead: S = signed(state.ring.head().wrapping_sub(clock));
-        let [most, lag] = self.most;
+        let Reach { lead: most, lag, .. } = self.reach::<N>();
+        let ticks = state.ring.head().wrapping_sub(clock);
+        let lead: S = signed(ticks);
+        self.mechanism.drive_mut().command = state.setpoints.pieces(ticks.cast_signed(), self.rate);
         let lags: S = -(lead / lag);
         let given_way = factor(lead / most, BY_LEAD) * factor(-lags, BY_LAG);
         let forced = lags.select_gt(one, one, zero);
@@ -240,8 +303,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
             let from = state.ring.newest();
             let internal = self.mechanism.fresh();
             let from = (&from.pose, &from.velocity, &internal);
-            let (t, h) = (now + lead * self.tick, length * self.tick);
-            Rodas3::attempt(&self.mechanism, t, h, from, Some(forced), &mut state.sums)
+            Rodas3::attempt(&self.mechanism, zero, length * self.tick, from, Some(forced), &mut state.sums)
         };
         let [momentum, place] = self.weights;
         let error = (end.error * momentum).max_of(end.drift * place);
@@ -260,7 +322,6 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         // Where not even a forced step is finite, the last motion is held for a period.
         let held = forced * (one - accepted);
         state.clock = clock.wrapping_sub((held * period).as_());
-        let clock = state.clock;
         let relative = error / given_way;
         let factor = S::from_f64(SAFETY) / relative.pow(S::from_f64(1.0 / 3.0));
         let next =
@@ -272,23 +333,35 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         state.forced = state.forced.saturating_add(forced.as_());
         let tolerance = self.limits.tolerance;
         state.excess += accepted * (one - forced) * error.select_gt(one, error - one, zero) * tolerance;
-
-        let lead = signed::<S>(state.ring.head().wrapping_sub(clock)) * self.tick;
-        let speed = state.ring.read(clock, |knot| self.mechanism.speed(&knot.velocity));
-        let time = now + lead.select_gt(zero, zero, lead);
-        Prediction {
-            time,
-            speed,
-            force: self.mechanism.drive().force(time, speed),
-            lead,
-            tolerance: forced.select_gt(zero, one / zero, given_way * tolerance),
-            excess: state.excess,
-            forced: state.forced,
-        }
+        forced.select_gt(zero, one / zero, given_way * tolerance)
     }
 
-    /// Goes on from the motion at the present instant: for when the command or the unit has changed, and with it the prediction
-    /// that is called. Where the prediction is behind, it goes on from the last motion known.
+    /// Speed (m/s) and position (m) along the drive so many `periods` after the present instant, or the last ones known.
+    #[inline(always)]
+    fn motion<const D: usize, const N: usize>(&self, state: &State<S, M::Pose, D, N>, periods: u32) -> [S; 2]
+    where
+        M: Driven<S, D>,
+    {
+        let mechanism = &self.mechanism;
+        state.ring.read(state.clock.wrapping_add(periods.wrapping_mul(TICKS)), |knot| {
+            [mechanism.speed(&knot.velocity), mechanism.position(&knot.pose)]
+        })
+    }
+
+    /// The force (N) of the drive so many `periods` after the present instant; none if that is beyond the lead.
+    pub fn forecast<const D: usize, const N: usize>(&self, state: &State<S, M::Pose, D, N>, periods: u32) -> Option<S>
+    where
+        M: Driven<S, D>,
+    {
+        let ticks = state.ring.head().wrapping_sub(state.clock).cast_signed();
+        let is_known = ticks >= 0 && i64::from(whole(ticks)) >= i64::from(periods);
+        let [speed, _] = self.motion(state, periods.min(MOST_EARLY));
+        let command = state.setpoints.at(periods.min(MOST_EARLY).cast_signed());
+        is_known.then(|| self.mechanism.drive().gain * (command - speed))
+    }
+
+    /// Goes on from the motion at the present instant: for when the command has changed that was planned, or the unit, and with it the
+    /// prediction that is called. Where the prediction is behind, it goes on from the last motion known.
     pub fn restart<const D: usize, const N: usize>(&self, state: &mut State<S, M::Pose, D, N>)
     where
         M: Driven<S, D>,
@@ -301,6 +374,8 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         let pose = mechanism.normalised(&present.pose);
         state.ring.restart(state.clock, Knot { pose, ..present });
         state.length = S::from_f64(FIRST);
+        state.is_open = S::one();
+        state.told.forget();
     }
 }
 
@@ -311,16 +386,6 @@ fn factor<S: Scalar, const N: usize>(x: S, steps: [[f64; 2]; N]) -> S {
     steps
         .iter()
         .fold(one, |product, [below, factor]| product * S::from_f64(*below).select_gt(x, S::from_f64(*factor), one))
-}
-
-impl<S: Scalar> Prediction<S> {
-    /// Ahead of the clock, or behind it.
-    pub fn status(&self) -> Status<S>
-    where
-        S: PartialOrd,
-    {
-        if self.lead >= S::zero() { Status::Ahead(self.lead) } else { Status::Behind(-self.lead) }
-    }
 }
 
 #[cfg(test)]

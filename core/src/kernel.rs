@@ -58,6 +58,11 @@ impl<S: Scalar, M, I: Integrator> Kernel<S, M, I> {
         &self.mechanism
     }
 
+    /// The mechanism, whose drive may be given another command: see [`Commandable`](crate::drive::Commandable).
+    pub fn mechanism_mut(&mut self) -> &mut M {
+        &mut self.mechanism
+    }
+
     /// The time (s) after `steps` steps, to the last place of `S`. In f32 a count is exact up to 2²⁴, 4.7 h at 1 kHz; beyond,
     /// time goes on in treads of 2, 4 and more steps, and a ramp that is still under way then goes up such a stair. A ramp
     /// that is over needs no time: the motion has the same bits then at any count.

@@ -1,6 +1,6 @@
 //! What an integrator sees of a scene: generalised velocities, momenta, forces, iteration matrices and Jacobians.
 
-use crate::{SVector, Scalar, drive::Drive, law::friction::SlidingContact};
+use crate::{SVector, Scalar, drive::Led, law::friction::SlidingContact};
 
 /// How forces are to be linearised.
 #[derive(Clone, Copy, Debug)]
@@ -217,16 +217,22 @@ pub trait Mechanism<S: Scalar, const D: usize> {
     }
 }
 
-/// A mechanism that a drive pushes and whose laws have no internal variables.
+/// A mechanism that a drive pushes by setpoints, and whose laws have no internal variables.
 pub trait Driven<S: Scalar, const D: usize>: Mechanism<S, D> {
     /// The drive.
-    fn drive(&self) -> &Drive<S>;
+    fn drive(&self) -> &Led<S>;
+
+    /// The drive, to be given the command of the next step.
+    fn drive_mut(&mut self) -> &mut Led<S>;
 
     /// The mass (kg) that the drive pushes.
     fn mass(&self) -> S;
 
     /// The speed (m/s) along the drive of a `velocity`.
     fn speed(&self, velocity: &SVector<S, D>) -> S;
+
+    /// How far (m) along the drive a `pose` is.
+    fn position(&self, pose: &Self::Pose) -> S;
 }
 
 #[cfg(test)]

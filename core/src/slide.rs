@@ -12,7 +12,7 @@ mod energy;
 
 use crate::{
     ParameterError, SVector, Scalar, Vector3,
-    drive::Drive,
+    drive::{Drive, Led, Push},
     error::bounded,
     law::{ClearanceFit, Elastic, Fit, Friction, Impact},
     mechanism::Driven,
@@ -60,8 +60,8 @@ pub fn box_inertia<S: Scalar>(mass: S, [x, y, z]: [S; 3]) -> Vector3<S> {
 /// Pins between their four walls, whose gaps (m) `G` are told.
 pub type Pins<S, E, F, G> = Alike<Contact<Impact<S, E>, F>, PinOfFrame<S>, G, PINS, 3>;
 
-/// A slide with its normal law `E`, friction law `F` and drive; its pins [fit](Fit) somehow, or all with clearance.
-pub type Slide<S, E, F, G = [S; 4]> = System<Floating<S>, (Pins<S, E, F, G>, Element<Pull<S>, Pusher<Drive<S>>, 2>)>;
+/// A slide with its normal law `E`, friction law `F` and drive `P`; its pins [fit](Fit) somehow, or all with clearance.
+pub type Slide<S, E, F, G = [S; 4], P = Drive<S>> = System<Floating<S>, (Pins<S, E, F, G>, Element<Pull<S>, Pusher<P>, 2>)>;
 
 /// The internal variables of friction, `M` for a contact, on a slide.
 pub type Internal<M> = ([[M; 2]; PINS], ());
@@ -110,10 +110,28 @@ impl<S: Scalar + PartialOrd, E: Elastic<S>, F: Friction<S>> Slide<S, E, F> {
     }
 }
 
-impl<S: Scalar, E: Elastic<S>, F: Friction<S>, G: Fit<Number = S>> Slide<S, E, F, G> {
+impl<S: Scalar, E: Elastic<S>, F: Friction<S>, G: Fit<Number = S>, P: Push<S>> Slide<S, E, F, G, P> {
     /// The drive.
-    pub fn drive(&self) -> &Drive<S> {
+    pub fn drive(&self) -> &P {
         &self.elements().1.law.0
+    }
+
+    /// The drive, to be given another command.
+    pub fn drive_mut(&mut self) -> &mut P {
+        &mut self.elements_mut().1.law.0
+    }
+
+    /// The same slide with another drive at the same point.
+    ///
+    /// # Errors
+    /// [`ParameterError`] names the first parameter of the drive that is not finite or out of bounds.
+    pub fn driven_by<Q: Push<S>>(&self, push: Q) -> Result<Slide<S, E, F, G, Q>, ParameterError<S>>
+    where
+        S: PartialOrd,
+    {
+        let (pins, pull) = self.elements();
+        let pull = Element { link: pull.link, law: Pusher(push.checked()?) };
+        Ok(System::new(*self.bodies(), (*pins, pull)))
     }
 
     /// The laws of its contacts.
@@ -153,10 +171,17 @@ pub fn to_walls<S: Scalar>([left, right, rail, wall]: [S; 4], d: &Vector3<S>) ->
     [left + d.x, right - d.x, rail - d.y, wall + d.y]
 }
 
-impl<S: Scalar, E: Elastic<S>, F: Friction<S, Internal = ()>, G: Fit<Number = S>> Driven<S, 6> for Slide<S, E, F, G> {
+impl<S: Scalar, E: Elastic<S>, F: Friction<S, Internal = ()>, G: Fit<Number = S>> Driven<S, 6>
+    for Slide<S, E, F, G, Led<S>>
+{
     #[inline(always)]
-    fn drive(&self) -> &Drive<S> {
+    fn drive(&self) -> &Led<S> {
         &self.elements().1.law.0
+    }
+
+    #[inline(always)]
+    fn drive_mut(&mut self) -> &mut Led<S> {
+        &mut self.elements_mut().1.law.0
     }
 
     #[inline(always)]
@@ -167,5 +192,10 @@ impl<S: Scalar, E: Elastic<S>, F: Friction<S, Internal = ()>, G: Fit<Number = S>
     #[inline(always)]
     fn speed(&self, velocity: &SVector<S, 6>) -> S {
         velocity.z
+    }
+
+    #[inline(always)]
+    fn position(&self, pose: &Pose<S>) -> S {
+        pose.displacement_w.z
     }
 }

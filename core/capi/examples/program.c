@@ -11,6 +11,8 @@ void put(const char *text);
 #define STROKE 1500u
 /* Periods from the clock's start to the release of the unit that is predicted ahead. */
 #define EARLY 70u
+/* Periods of the command that is told to the predictor. */
+#define COMMANDED 20000u
 
 static slipfit_predictor predictor;
 static slipfit_ahead ahead;
@@ -59,17 +61,54 @@ static void predict(void) {
     put_hex("failed", failed);
 }
 
-/* Ahead of the clock, through a change of the command and of what is known of the unit. */
+/* What a drive is told in so many periods: arcs of parabolas there and back, which are the same bits everywhere. */
+static float command(uint32_t period) {
+    float x = 2.0f * (float)(period % 800u) / 800.0f;
+    const float sign = x < 1.0f ? 0.08f : -0.08f;
+    x = x < 1.0f ? x : x - 1.0f;
+    return sign * 4.0f * x * (1.0f - x);
+}
+
+/* Any command, told once a period; the predictor is saved and restored on the way, and a second motion starts from rest. */
+static void follow_command(void) {
+    static slipfit_predictor saved;
+    uint64_t hash = EMPTY;
+    uint32_t failed = (uint32_t)slipfit_predictor_restart(&predictor);
+    for (uint32_t i = 0; i < COMMANDED; i++) {
+        slipfit_prediction found;
+        if (i == COMMANDED / 2) {
+            saved = predictor;
+            failed |= (uint32_t)slipfit_predictor_restart(&predictor);
+            failed |= (uint32_t)slipfit_predictor_step(&predictor);
+            predictor = saved;
+        }
+        failed |= (uint32_t)slipfit_predictor_set_command(&predictor, command(i));
+        failed |= (uint32_t)slipfit_predictor_step(&predictor);
+        failed |= (uint32_t)slipfit_predictor_read(&predictor, &found);
+        hash = add(add(add(add(hash, found.time), found.force), found.velocity), found.position);
+    }
+    put_hex("commanded", hash);
+    put_hex("failed", failed);
+}
+
+/* Ahead of the clock, through a change of the command and of what is known of the unit; then a command that is planned, then one that is
+ * told as it comes. */
 static void predict_ahead(void) {
-    const slipfit_ahead_limits limits = {.period = 1e-3f, .tolerance = 7e-5f, .lead = 0.2f, .lag = 0.2f};
+    const slipfit_ahead_limits limits = {.period = 1e-3f, .tolerance = 7e-5f, .lead = 0.2f, .lag = 0.2f, .attempts = 1u};
     slipfit_scene slower = slipfit_this_scene;
     slower.drive_speed = 0.05f;
     uint64_t hash = EMPTY, behind = 0;
     uint32_t failed = (uint32_t)slipfit_ahead_init(&ahead, &slipfit_this_scene, 2.5f, &limits, EARLY);
-    for (uint32_t i = 0; i < EARLY + STROKE; i++) {
+    uint32_t horizon = 0;
+    failed |= (uint32_t)slipfit_ahead_horizon(&ahead, &horizon);
+    for (uint32_t i = 0; i < EARLY + 2u * STROKE; i++) {
         slipfit_ahead_prediction found;
         if (i == EARLY + STROKE / 2) {
             failed |= (uint32_t)slipfit_ahead_restart(&ahead, &slower, 2.25f);
+        } else if (i >= EARLY + STROKE + STROKE / 2) {
+            failed |= (uint32_t)slipfit_ahead_follow(&ahead, command(i));
+        } else if (i >= EARLY + STROKE) {
+            failed |= (uint32_t)slipfit_ahead_plan(&ahead, horizon, command(i));
         }
         const slipfit_status stepped = slipfit_ahead_step(&ahead);
         failed |= stepped == SLIPFIT_BEHIND ? 0u : (uint32_t)stepped;
@@ -77,6 +116,7 @@ static void predict_ahead(void) {
         behind += stepped == SLIPFIT_BEHIND;
         hash = add(add(add(add(hash, found.time), found.force), found.velocity), found.lead);
         hash = add(add(add(hash, found.tolerance), found.excess), (float)found.forced);
+        hash = add(add(hash, found.position), found.deviation);
     }
     put_hex("ahead", hash);
     put_hex("behind", behind);
@@ -160,6 +200,7 @@ static void refuse(void) {
 int main(void) {
     predict();
     predict_ahead();
+    follow_command();
     watch();
     record();
     refuse();

@@ -28,6 +28,9 @@
 // The most periods by which the clock of a prediction may start before the unit's release.
 #define SLIPFIT_AHEAD_EARLY_MOST 1000
 
+// The most attempts at a step in a period.
+#define SLIPFIT_AHEAD_ATTEMPTS_MOST 16
+
 // The second axis of a table is time (s).
 #define SLIPFIT_AXIS_TIME 2
 
@@ -120,13 +123,15 @@ typedef struct slipfit_prediction {
   float force;
   // Velocity along the drive (m/s).
   float velocity;
+  // How far the slide is along the drive (m), from where it was at rest.
+  float position;
   // Imbalance of momentum (N·s) that the step left; infinite if it was not finite.
   float residual;
 } slipfit_prediction;
 
 // Memory of a prediction ahead of the clock; opaque.
 typedef struct slipfit_ahead {
-  uint32_t words[3684];
+  uint32_t words[4231];
 } slipfit_ahead;
 
 // What prediction ahead of the clock is held to.
@@ -139,6 +144,8 @@ typedef struct slipfit_ahead_limits {
   float lead;
   // The lag behind the clock (s) at which steps are forced, whatever their error, 4 to 1000 periods.
   float lag;
+  // Attempts at a step in each period, 1 to SLIPFIT_AHEAD_ATTEMPTS_MOST: 1 for strokes, 2 or 3 for commands that reverse often.
+  uint32_t attempts;
 } slipfit_ahead_limits;
 
 // What a prediction ahead of the clock says after a step.
@@ -149,6 +156,11 @@ typedef struct slipfit_ahead_prediction {
   float force;
   // Velocity along the drive (m/s).
   float velocity;
+  // How far the slide is along the drive (m), from where it was at rest.
+  float position;
+  // Of a command that was followed: the commanded speed (m/s) less the one that was reckoned with when this instant was to come.
+  // Else 0.
+  float deviation;
   // How far beyond the clock the motion is known (s); negative where the prediction is behind.
   float lead;
   // The tolerance (N) that the step was held to; infinite for a forced one.
@@ -390,6 +402,9 @@ typedef struct slipfit_wear {
 // The prediction is behind the clock: what it says holds for an earlier time.
 #define SLIPFIT_BEHIND 9
 
+// The motion is already predicted for that instant, by another command.
+#define SLIPFIT_LATE 10
+
 // The region ends before the table does.
 #define SLIPFIT_TABLE_TRUNCATED 16
 
@@ -472,6 +487,20 @@ slipfit_status slipfit_predictor_init(struct slipfit_predictor *storage,
 // As for slipfit_predictor_init; the memory has been written before.
 slipfit_status slipfit_predictor_step(struct slipfit_predictor *storage);
 
+// From the coming step on the commanded speed is `speed` (m/s, within 1000 either way), in place of the scene's ramp, until another one
+// is set: any motion, reversals and stops too, once a period.
+//
+// # Safety
+// As for slipfit_predictor_step.
+slipfit_status slipfit_predictor_set_command(struct slipfit_predictor *storage,
+                                             float speed);
+
+// The unit is at rest at time 0 again, without the trial that making it takes. Its command is the scene's ramp, or what was set last.
+//
+// # Safety
+// As for slipfit_predictor_step.
+slipfit_status slipfit_predictor_restart(struct slipfit_predictor *storage);
+
 // What the predictor says now.
 //
 // # Safety
@@ -479,9 +508,10 @@ slipfit_status slipfit_predictor_step(struct slipfit_predictor *storage);
 slipfit_status slipfit_predictor_read(const struct slipfit_predictor *storage, struct slipfit_prediction *prediction);
 
 // Makes a prediction ahead of the clock in `*storage` for a unit of tolerance level `n` (-20 to 20) of `*scene`, at rest until its release at
-// time 0. Its clock starts `early` periods before, SLIPFIT_AHEAD_EARLY_MOST at most, in which it takes a lead. The scene's scheme
-// and step do not matter. Its friction must be regularised, also in a library that is built for exact friction: instead of
-// that take a stick band of 10 to 30 µm/s, or SLIPFIT_LAW is the answer.
+// time 0. Its clock starts `early` periods before, SLIPFIT_AHEAD_EARLY_MOST at most, in which it takes a lead. Its command is the
+// scene's ramp until another is told by slipfit_ahead_plan or slipfit_ahead_follow. The scene's scheme and step do not matter. Its
+// friction must be regularised, also in a library that is built for exact friction: instead of that take a stick band of 10 to 30 µm/s,
+// or SLIPFIT_LAW is the answer.
 //
 // # Safety
 // Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*storage` meanwhile.
@@ -490,6 +520,39 @@ slipfit_status slipfit_ahead_init(struct slipfit_ahead *storage,
                                   float n,
                                   const struct slipfit_ahead_limits *limits,
                                   uint32_t early);
+
+// The unit is at rest again until its release at time 0, `early` periods from now, with the scene's ramp as its command.
+//
+// # Safety
+// As for slipfit_ahead_step.
+slipfit_status slipfit_ahead_rest(struct slipfit_ahead *storage,
+                                  uint32_t early);
+
+// Writes to `*periods` how many periods after the end of the coming one a command may be planned: the horizon.
+//
+// # Safety
+// As for slipfit_ahead_read.
+slipfit_status slipfit_ahead_horizon(const struct slipfit_ahead *storage, uint32_t *periods);
+
+// The commanded `speed` (m/s, within 1000 either way) so many `periods` after the end of the coming one, of a command that is known in
+// advance, in place of the scene's ramp. Told for the horizon once a period, and once for each period up to there before the first, it
+// is known whenever it is needed; what is not told stays what it was the period before. SLIPFIT_PARAMETER beyond the horizon;
+// SLIPFIT_LATE if the motion is already predicted for that instant: slipfit_ahead_restart takes that back.
+//
+// # Safety
+// As for slipfit_ahead_step.
+slipfit_status slipfit_ahead_plan(struct slipfit_ahead *storage,
+                                  uint32_t periods,
+                                  float speed);
+
+// The commanded `speed` (m/s, within 1000 either way) at the end of the coming period, of a command that is not known in advance, in
+// place of the scene's ramp; once a period, before slipfit_ahead_step. A parabola through what it was in the last eight periods says what
+// it will be at the horizon; at first and after slipfit_ahead_restart it stays what it is.
+//
+// # Safety
+// As for slipfit_ahead_step.
+slipfit_status slipfit_ahead_follow(struct slipfit_ahead *storage,
+                                    float speed);
 
 // One period, in the same instructions whatever the motion does: the clock goes on by it, and one step is attempted.
 // SLIPFIT_BEHIND if the motion is not known at the new instant.
@@ -506,9 +569,18 @@ slipfit_status slipfit_ahead_step(struct slipfit_ahead *storage);
 slipfit_status slipfit_ahead_read(const struct slipfit_ahead *storage,
                                   struct slipfit_ahead_prediction *prediction);
 
+// Writes to `*force` (N) what the drive gives so many `periods` after the present instant. SLIPFIT_BEHIND if that is beyond the lead.
+//
+// # Safety
+// As for slipfit_ahead_read.
+slipfit_status slipfit_ahead_forecast(const struct slipfit_ahead *storage,
+                                      uint32_t periods,
+                                      float *force);
+
 // Goes on from the motion at the present instant as a unit of tolerance level `n` of `*scene`: for when the command or what is
-// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0. Where the prediction is
-// behind, it goes on from the last motion known. It keeps its limits, and if it is refused everything else too.
+// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0; a command that was told is to be
+// told again, from the coming period on. Where the prediction is behind, it goes on from the last motion known. It keeps its limits, and
+// if it is refused everything else too.
 //
 // # Safety
 // As for slipfit_ahead_step.

@@ -1,6 +1,7 @@
 //! The predictor: a unit's kernel and its state.
 
 use slipfit_core::{
+    drive::{Commandable, checked_command},
     integrator::ImplicitEuler,
     kernel::{Kernel, Report, StateOf},
     menu::FrictionData,
@@ -35,6 +36,8 @@ pub struct slipfit_prediction {
     pub force: f32,
     /// Velocity along the drive (m/s).
     pub velocity: f32,
+    /// How far the slide is along the drive (m), from where it was at rest.
+    pub position: f32,
     /// Imbalance of momentum (N·s) that the step left; infinite if it was not finite.
     pub residual: f32,
 }
@@ -72,11 +75,13 @@ const TRIAL_STEP: f32 = 1e-3;
 /// By how much of the greatest force half the step may change the drive's force in the trial.
 const TRIAL_ERROR: f32 = 0.1;
 
+/// What a predictor says of steps before the first.
+const NO_STEP: Report<f32> = Report { residual: 0.0, error: 0.0 };
+
 impl Predictor {
     fn new(slide: Unit<Friction>, step: f32) -> Result<Self, Refusal> {
         let kernel = Kernel::new(slide, step)?;
-        let report = Report { residual: 0.0, error: 0.0 };
-        Ok(Self { state: kernel.at_rest(Pose::nominal()), kernel, report })
+        Ok(Self { state: kernel.at_rest(Pose::nominal()), kernel, report: NO_STEP })
     }
 
     /// One step; whether the motion could be moved. One copy in the code serves the trial too.
@@ -158,6 +163,39 @@ pub unsafe extern "C" fn slipfit_predictor_step(storage: *mut slipfit_predictor)
     })
 }
 
+/// From the coming step on the commanded speed is `speed` (m/s, within 1000 either way), in place of the scene's ramp, until another one
+/// is set: any motion, reversals and stops too, once a period.
+///
+/// # Safety
+/// As for slipfit_predictor_step.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_predictor_set_command(
+    storage: *mut slipfit_predictor,
+    speed: f32,
+) -> slipfit_status {
+    status(|| {
+        // SAFETY: the caller's promise.
+        let predictor = unsafe { object_mut(storage)? };
+        predictor.kernel.mechanism_mut().drive_mut().set_command(checked_command(speed)?);
+        Ok(())
+    })
+}
+
+/// The unit is at rest at time 0 again, without the trial that making it takes. Its command is the scene's ramp, or what was set last.
+///
+/// # Safety
+/// As for slipfit_predictor_step.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_predictor_restart(storage: *mut slipfit_predictor) -> slipfit_status {
+    status(|| {
+        // SAFETY: the caller's promise.
+        let predictor = unsafe { object_mut(storage)? };
+        predictor.state = predictor.kernel.at_rest(Pose::nominal());
+        predictor.report = NO_STEP;
+        Ok(())
+    })
+}
+
 /// What the predictor says now.
 ///
 /// # Safety
@@ -173,7 +211,8 @@ pub unsafe extern "C" fn slipfit_predictor_read(
             let predictor = object(storage)?;
             let Predictor { kernel, state, report } = predictor;
             let (time, velocity) = (kernel.time(state.steps), state.motion.velocity.z);
-            Ok(slipfit_prediction { time, force: predictor.force(), velocity, residual: report.residual })
+            let position = state.motion.pose.displacement_w.z;
+            Ok(slipfit_prediction { time, force: predictor.force(), velocity, position, residual: report.residual })
         })
     })
 }

@@ -27,6 +27,8 @@ pub const SLIPFIT_NOT_FINITE: slipfit_status = 7;
 pub const SLIPFIT_STEP: slipfit_status = 8;
 /// The prediction is behind the clock: what it says holds for an earlier time.
 pub const SLIPFIT_BEHIND: slipfit_status = 9;
+/// The motion is already predicted for that instant, by another command.
+pub const SLIPFIT_LATE: slipfit_status = 10;
 /// The region ends before the table does.
 pub const SLIPFIT_TABLE_TRUNCATED: slipfit_status = 16;
 /// No table starts there.
@@ -88,6 +90,7 @@ pub extern "C" fn slipfit_status_name(status: slipfit_status) -> *const c_char {
         SLIPFIT_NOT_FINITE => c"SLIPFIT_NOT_FINITE",
         SLIPFIT_STEP => c"SLIPFIT_STEP",
         SLIPFIT_BEHIND => c"SLIPFIT_BEHIND",
+        SLIPFIT_LATE => c"SLIPFIT_LATE",
         SLIPFIT_TABLE_TRUNCATED => c"SLIPFIT_TABLE_TRUNCATED",
         SLIPFIT_TABLE_MAGIC => c"SLIPFIT_TABLE_MAGIC",
         SLIPFIT_TABLE_VERSION => c"SLIPFIT_TABLE_VERSION",

@@ -134,13 +134,12 @@ impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
         Bracket { counts, weights }
     }
 
-    /// The number that `value` is of a motion, at `instant` (ticks).
+    /// The numbers that `values` are of a motion, at `instant` (ticks).
     #[inline(always)]
-    pub fn read(&self, instant: u32, value: impl Fn(&Knot<S, P, D>) -> S) -> S {
+    pub fn read<const V: usize>(&self, instant: u32, values: impl Fn(&Knot<S, P, D>) -> [S; V]) -> [S; V] {
         let Bracket { counts: [a, b, c, d], weights: [p, q, r] } = self.bracket(instant);
-        let [a, b, c, d] = [self.knot(a), self.knot(b), self.knot(c), self.knot(d)];
-        let [a, b, c, d] = [value(a), value(b), value(c), value(d)];
-        b + ((b - a) * p + (c - b) * q + (d - c) * r)
+        let [a, b, c, d] = [self.knot(a), self.knot(b), self.knot(c), self.knot(d)].map(values);
+        core::array::from_fn(|i| b[i] + ((b[i] - a[i]) * p + (c[i] - b[i]) * q + (d[i] - c[i]) * r))
     }
 
     /// The motion at `instant` (ticks), or the newest if that is older; `shifted` is base + weight·(to − from).

@@ -1,6 +1,6 @@
 //! A P-velocity controller that follows any commanded speed.
 
-use super::{Push, Pushed};
+use super::{Commandable, Push, Pushed};
 use crate::{ParameterError, Scalar, error::bounded};
 
 /// The commanded speed from a time on: a cubic of the time since.
@@ -123,9 +123,23 @@ impl<S: Scalar, C: Command<S>> Push<S> for Commanded<S, C> {
     }
 }
 
+impl<S: Scalar, const N: usize> Commandable<S> for Commanded<S, [Piece<S>; N]> {
+    /// Without pieces the command stays zero.
+    #[inline(always)]
+    fn set_command(&mut self, v: S) {
+        let zero = S::zero();
+        let mut start = S::from_f64(-1e6);
+        for piece in &mut self.command {
+            *piece = Piece { start, coefficients: [v, zero, zero, zero] };
+            // In order, as they have to be.
+            start += S::one();
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Command, Commanded, Piece, Push};
+    use super::{Command, Commandable, Commanded, Piece, Push};
     use crate::{Vector3, drive::Drive};
 
     /// Eq. 12's ramp from 0.05 to 1 s to 0.1 m/s as pieces.
@@ -159,6 +173,18 @@ mod tests {
     fn nothing_is_commanded_before_the_first_piece_and_without_pieces() {
         assert_eq!(ramp().piece(0.04).speed(0.04), 0.0);
         assert_eq!(<[Piece<f32>; 0]>::piece(&[], 0.04).speed(0.04), 0.0);
+    }
+
+    #[test]
+    fn a_command_that_is_set_holds_exactly() {
+        let mut commanded = Commanded { gain: 40.0, command: ramp() };
+        for v in [0.07, -0.1, 0.0] {
+            commanded.set_command(v);
+            for t in [-1000.0, 0.0, 0.5, 1e5] {
+                assert_eq!((commanded.command.piece(t).speed(t), commanded.pushed(t, 0.0).per_time), (v, 0.0));
+            }
+            assert!(commanded.checked().is_ok());
+        }
     }
 
     #[test]

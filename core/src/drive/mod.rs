@@ -2,10 +2,12 @@
 
 mod command;
 mod ramp;
+mod setpoints;
 mod train;
 
 pub use command::{Command, Commanded, Piece, check_pieces};
-pub use ramp::Drive;
+pub use ramp::{Drive, checked_command};
+pub use setpoints::{Led, between};
 pub use train::{Train, TrainData};
 
 use crate::{ParameterError, Scalar};
@@ -36,6 +38,12 @@ pub trait Push<S>: Clone {
 
     /// The force on the body at time `t` (s) and speed `v` (m/s, rad/s): the effort, less what the drive train takes.
     fn pushed(&self, t: S, v: S) -> Pushed<S>;
+}
+
+/// A drive whose command may be told while it is stepped.
+pub trait Commandable<S> {
+    /// From now on the commanded speed is `v` (m/s, rad/s) at any time, until another one is set.
+    fn set_command(&mut self, v: S);
 }
 
 /// No drive.

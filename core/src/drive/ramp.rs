@@ -1,6 +1,6 @@
 //! The drive: a P-velocity controller behind a ramp (eq. 12).
 
-use super::{Push, Pushed};
+use super::{Commandable, Push, Pushed};
 use crate::{
     ParameterError, Scalar, Vector3,
     error::bounded,
@@ -24,6 +24,14 @@ pub struct Drive<S> {
 
 crate::cast::cast!([] [] Drive: Drive<f64> => T Drive<T> { gain, ramp_start, ramp_end, speed, point_b });
 
+/// The commanded speed `v` (m/s, rad/s), if a drive can be told it.
+///
+/// # Errors
+/// If it is not finite or outside ± 1000.
+pub fn checked_command<S: Scalar + PartialOrd>(v: S) -> Result<S, ParameterError<S>> {
+    bounded("drive.speed", v, [-1e3, 1e3])
+}
+
 impl<S: Scalar + PartialOrd> Drive<S> {
     /// This drive, if its parameters can be stepped without failing.
     ///
@@ -34,7 +42,7 @@ impl<S: Scalar + PartialOrd> Drive<S> {
         bounded("drive.ramp_start", self.ramp_start, [-1e6, 1e6])?;
         bounded("drive.ramp_end", self.ramp_end, [self.ramp_start.to_f64(), 1e6])?;
         bounded("drive.ramp_duration", self.ramp_end - self.ramp_start, [1e-6, 1e6])?;
-        bounded("drive.speed", self.speed, [-1e3, 1e3])?;
+        checked_command(self.speed)?;
         for component in self.point_b.iter() {
             bounded("drive.point", *component, [-1e3, 1e3])?;
         }
@@ -88,9 +96,17 @@ impl<S: Scalar> Push<S> for Drive<S> {
     }
 }
 
+impl<S: Scalar> Commandable<S> for Drive<S> {
+    /// The end of a ramp that was over long before any time.
+    #[inline(always)]
+    fn set_command(&mut self, v: S) {
+        (self.ramp_start, self.ramp_end, self.speed) = (S::from_f64(-1e6), S::from_f64(-999_999.0), v);
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Drive;
+    use super::{Commandable, Drive};
     use crate::Vector3;
 
     #[test]
@@ -107,5 +123,17 @@ mod tests {
         let drive = Drive { gain: 40.0, ramp_start: 0.05, ramp_end: 1.0, speed: 0.1, point_b: Vector3::zeros() };
         assert_eq!(drive.force(2.0, 0.0), 4.0);
         assert_eq!(drive.force(0.0, 0.1), -4.0);
+    }
+
+    #[test]
+    fn a_command_that_is_set_holds_exactly() {
+        let mut drive = Drive { gain: 40.0f32, ramp_start: 0.05, ramp_end: 1.0, speed: 0.1, point_b: Vector3::zeros() };
+        for v in [0.07, -0.1, 0.0, 1e-30] {
+            drive.set_command(v);
+            for t in [-1000.0, 0.0, 0.5, 1e5] {
+                assert_eq!((drive.command(t), drive.command_rate(t)), (v, 0.0));
+            }
+            assert!(drive.checked().is_ok());
+        }
     }
 }

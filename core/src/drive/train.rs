@@ -1,6 +1,6 @@
 //! Drive trains: the limit of the motor and the friction between the motor and the body that it drives.
 
-use super::{Push, Pushed};
+use super::{Commandable, Push, Pushed};
 use crate::{ParameterError, Scalar, error::bounded, law::Regularised};
 
 /// Parameters of a drive train, SI units; of a torque in N·m and rad instead of N and m.
@@ -83,6 +83,13 @@ impl<S: Scalar, P: Push<S>> Push<S> for Train<S, P> {
             per_speed: free * asked.per_speed + coulomb * (ratio + (ratio_slope + ratio_slope) * square) + viscous,
             per_time: free * asked.per_time,
         }
+    }
+}
+
+impl<S, P: Commandable<S>> Commandable<S> for Train<S, P> {
+    #[inline(always)]
+    fn set_command(&mut self, v: S) {
+        self.controller.set_command(v);
     }
 }
 

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     ParameterError, SMatrix, SVector, Scalar,
-    drive::{Drive, Push},
+    drive::{Led, Push},
     error::bounded,
     law::{Elastic, Impact, Stop, stop::Resistance},
     mechanism::Driven,
@@ -63,9 +63,13 @@ impl<S: Scalar, E: Elastic<S>, C: Stop<S>, P: Push<S>> AxisBody<S, E, C, P> {
     }
 }
 
-impl<S: Scalar, E: Elastic<S>, C: Stop<S>> Driven<S, 1> for AxisBody<S, E, C, Drive<S>> {
-    fn drive(&self) -> &Drive<S> {
+impl<S: Scalar, E: Elastic<S>, C: Stop<S>> Driven<S, 1> for AxisBody<S, E, C, Led<S>> {
+    fn drive(&self) -> &Led<S> {
         &self.elements().1.law.0
+    }
+
+    fn drive_mut(&mut self) -> &mut Led<S> {
+        &mut self.elements_mut().1.law.0
     }
 
     fn mass(&self) -> S {
@@ -74,6 +78,10 @@ impl<S: Scalar, E: Elastic<S>, C: Stop<S>> Driven<S, 1> for AxisBody<S, E, C, Dr
 
     fn speed(&self, velocity: &SVector<S, 1>) -> S {
         velocity.x
+    }
+
+    fn position(&self, pose: &S) -> S {
+        *pose
     }
 }
 

@@ -74,6 +74,11 @@ impl<B, E> System<B, E> {
         &self.elements
     }
 
+    /// The elements, to be given other parameters, which nobody checks.
+    pub fn elements_mut(&mut self) -> &mut E {
+        &mut self.elements
+    }
+
     /// What the `drive`, one of the elements, sees and gives at time `t` (s), at this `pose` and `velocity`.
     #[inline(always)]
     pub fn driving<S: Scalar, L, W, const R: usize, const D: usize>(

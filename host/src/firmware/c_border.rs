@@ -24,23 +24,29 @@ pub struct Border<'a> {
     pub drives: Vec<Driven<'a>>,
     /// How a unit and its state are made of the level `n`: an expression of Rust.
     pub start: &'a str,
+    /// The state of a unit's `parameters` at the start: an expression of Rust.
+    pub at_start: &'a str,
 }
 
 /// A drive as C sees it.
 pub struct Driven<'a> {
     /// Its function.
     pub function: String,
+    /// The function that tells it its command.
+    pub command: String,
     /// What people call it.
     pub name: &'a str,
     /// What it gives.
     pub kind: DriveKind,
     /// Its effort and speed, from `parameters` and `state`: an expression of Rust.
     pub found: String,
+    /// What tells it the commanded `speed`, of `parameters`: a statement of Rust.
+    pub told: String,
 }
 
 /// What functions of C return, beside 0 for done: the pointer is null.
 const NULL: i32 = 1;
-/// A gap at level n is out of bounds, or n.
+/// A gap at level n is out of bounds, or n, or a commanded speed.
 const OUT_OF_BOUNDS: i32 = 2;
 /// The motion left the finite range and was held as it was.
 const HELD: i32 = 3;
@@ -67,7 +73,7 @@ impl Border<'_> {
 
     /// The module with the functions.
     pub fn rust(&self) -> String {
-        let Self { start, bytes, .. } = self;
+        let Self { start, at_start, bytes, .. } = self;
         let prefix = self.prefix();
         let mut text = format!(
             "//! What C calls, see `{prefix}.h`. Written by slipfit.\n\n\
@@ -116,11 +122,30 @@ impl Border<'_> {
              if step(parameters, state).residual < f32::INFINITY {{ 0 }} else {{ {HELD} }}\n}}\n\n\
              /// # Safety\n/// As the header says.\n\
              #[unsafe(no_mangle)]\n\
+             pub unsafe extern \"C\" fn {prefix}_restart(unit: *mut Memory) -> i32 {{\n    \
+             // SAFETY: the caller's promise.\n    \
+             if let Err(why) = unsafe {{ made(unit) }} {{\n        return why;\n    }}\n    \
+             // SAFETY: it was made, and the caller's promise that nobody else uses it meanwhile.\n    \
+             let Object {{ parameters, state }} = unsafe {{ (*unit).object.assume_init_mut() }};\n    \
+             *state = {at_start};\n    0\n}}\n\n\
+             /// # Safety\n/// As the header says.\n\
+             #[unsafe(no_mangle)]\n\
              pub unsafe extern \"C\" fn {prefix}_time(unit: *const Memory) -> f32 {{\n    \
              // SAFETY: the caller's promise.\n    \
              unsafe {{ made(unit) }}.map_or(f32::NAN, |unit| unit.parameters.time(unit.state.steps))\n}}\n"
         );
-        for Driven { function, found, .. } in &self.drives {
+        for Driven { function, found, command, told, .. } in &self.drives {
+            let _ = write!(
+                text,
+                "\n/// # Safety\n/// As the header says.\n#[unsafe(no_mangle)]\n\
+                 pub unsafe extern \"C\" fn {prefix}_{command}(unit: *mut Memory, speed: f32) -> i32 {{\n    \
+                 // SAFETY: the caller's promise.\n    \
+                 if let Err(why) = unsafe {{ made(unit) }} {{\n        return why;\n    }}\n    \
+                 let Ok(speed) = slipfit_core::drive::checked_command(speed) else {{ return {OUT_OF_BOUNDS} }};\n    \
+                 // SAFETY: it was made, and the caller's promise that nobody else uses it meanwhile.\n    \
+                 let Object {{ parameters, .. }} = unsafe {{ (*unit).object.assume_init_mut() }};\n    \
+                 {told};\n    0\n}}\n"
+            );
             let _ = write!(
                 text,
                 "\n/// # Safety\n/// As the header says.\n#[unsafe(no_mangle)]\n\
@@ -169,11 +194,11 @@ impl Border<'_> {
             text,
             "\n/* What functions return. */\n\
              enum {{\n    {upper}_OK = 0,\n    {upper}_NULL = {NULL},          /* the pointer is null */\n    \
-             {upper}_OUT_OF_BOUNDS = {OUT_OF_BOUNDS}, /* a gap at level n is, or n; there is no unit then */\n    \
+             {upper}_OUT_OF_BOUNDS = {OUT_OF_BOUNDS}, /* a gap at level n is, or n: there is no unit then; or a commanded speed */\n    \
              {upper}_HELD = {HELD},          /* the motion left the finite range and was held as it was */\n    \
              {upper}_MISALIGNED = {MISALIGNED},    /* the pointer is not aligned to eight bytes */\n    \
              {upper}_NOT_MADE = {NOT_MADE}       /* {prefix}_init has not made the unit, or failed */\n}};\n\n\
-             /* A unit and where it is; {name} keeps its numbers in it. */\n\
+             /* A unit and where it is; {name} keeps its numbers in it, and no pointers: a copy is the unit as it was. */\n\
              typedef struct {{\n    uint64_t words[{words}];\n}} {prefix}_unit;\n\n\
              /* What a drive gives and sees. */\n\
              typedef struct {{\n    float effort; /* N; N m of a drive that turns */\n    \
@@ -182,17 +207,21 @@ impl Border<'_> {
              int32_t {prefix}_init({prefix}_unit *unit, float n);\n\n\
              /* Moves it by {upper}_STEP: the same instructions whatever its state. */\n\
              int32_t {prefix}_step({prefix}_unit *unit);\n\n\
+             /* Back to the start of the scene's run, at time 0; what its drives were told stays. */\n\
+             int32_t {prefix}_restart({prefix}_unit *unit);\n\n\
              /* Its time (s); NAN where there is no unit, as of its drives below. */\n\
              float {prefix}_time(const {prefix}_unit *unit);\n",
             words = bytes / 8
         );
-        for Driven { function, name, kind, .. } in &self.drives {
+        for Driven { function, command, name, kind, .. } in &self.drives {
             let name = name.replace("*/", "* /");
             let (effort, speed) = (kind.choose("force (N)", "torque (N m)"), kind.choose("m/s", "rad/s"));
             let _ = write!(
                 text,
                 "\n/* {effort} and speed ({speed}) of the drive \"{name}\" now. */\n\
-                 {prefix}_driven {prefix}_{function}(const {prefix}_unit *unit);\n"
+                 {prefix}_driven {prefix}_{function}(const {prefix}_unit *unit);\n\n\
+                 /* From now on its commanded speed ({speed}, within 1000 either way) is this, in place of the scene's, until another one is set. */\n\
+                 int32_t {prefix}_{command}({prefix}_unit *unit, float speed);\n"
             );
         }
         guarded(&format!("{upper}_H"), &(text + "\n#ifdef __cplusplus\n}\n#endif\n"))

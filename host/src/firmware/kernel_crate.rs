@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     dynamics::driven::{DriveKind, Driven},
-    mechanism::{self, ByDrive, Mechanism, NamedDrive, RunError},
+    mechanism::{self, ByDrive, Mechanism, NamedDrive, RunError, command_name},
     setup::Scene,
 };
 
@@ -79,8 +79,16 @@ pub fn slide_crate(scene: &Scene, name: &str, core: Option<&Path>) -> CrateFiles
         step: scene.controller.step as f32,
         hash: Some(scene.hash()),
         bytes: BYTES_OF_SLIDE,
-        drives: vec![CDrive { function: "drive".into(), name: "drive", kind: DriveKind::Pushes, found: found.into() }],
+        drives: vec![CDrive {
+            function: "drive".into(),
+            command: "command".into(),
+            name: "drive",
+            kind: DriveKind::Pushes,
+            found: found.into(),
+            told: "set_command(parameters, speed)".into(),
+        }],
         start: "predictor(n).map(|unit| { let state = at_rest(&unit); (unit, state) })",
+        at_start: "at_rest(parameters)",
     };
     crate_files(&rust_source(scene), OF_SLIDE, &border, core)
 }
@@ -92,6 +100,8 @@ fn of_drive((function, drive): (String, &NamedDrive)) -> CDrive<'_> {
             "let found = {function}(parameters.mechanism(), parameters.time(state.steps), &state.motion.pose, \
              &state.motion.velocity);\n    Driven {{ effort: found.effort, speed: found.speed }}"
         ),
+        told: format!("{}(parameters.mechanism_mut(), speed)", command_name(&function)),
+        command: command_name(&function),
         function,
         name: &drive.name,
         kind: drive.action.kind(),
@@ -116,6 +126,7 @@ pub fn mechanism_crate(mechanism: &Mechanism, name: &str, core: Option<&Path>) -
         bytes: bytes_of_mechanism(&source, coordinates),
         drives: mechanism::drive_names(mechanism).into_iter().zip(&mechanism.drives).map(of_drive).collect(),
         start: "predictor(n)",
+        at_start: "at_start(parameters)",
     };
     Ok(crate_files(&source, OF_MECHANISM, &border, core))
 }
@@ -160,6 +171,16 @@ pub fn force(predictor: &Predictor, state: &State) -> f32 {
 /// Velocity of the slide (m/s) along the drive.
 pub fn velocity(state: &State) -> f32 {
     state.motion.velocity.z
+}
+
+/// How far the slide is (m) along the drive, from where it was at rest.
+pub fn position(state: &State) -> f32 {
+    state.motion.pose.displacement_w.z
+}
+
+/// From now on the commanded `speed` (m/s) is this, in place of the scene's ramp, until another one is set.
+pub fn set_command(predictor: &mut Predictor, speed: f32) {
+    slipfit_core::drive::Commandable::set_command(predictor.mechanism_mut().drive_mut(), speed);
 }
 ";
 

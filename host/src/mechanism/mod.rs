@@ -62,7 +62,7 @@ pub use run::{controller_run, film, run};
 pub use run_error::RunError;
 pub use sampling::Sampling;
 pub(crate) use source::scheme;
-pub use source::{dimension, drive_names, element_paths, rust_source};
+pub use source::{command_name, dimension, drive_names, element_paths, rust_source};
 pub use spring::{Spring, SpringKind};
 pub use start::Rest;
 pub use sunk::Sunk;

@@ -17,6 +17,7 @@ mod uses {
     use slipfit_core::{
         ParameterError,
         ahead::{Ahead, Limits, State},
+        drive::Led,
         law::{Impact, Regularised, ThreeHalves},
         pose::Pose,
         production::{self, Production, SAVED_SIZE, Unit},
@@ -62,10 +63,16 @@ mod uses {
         let data = black_box(cd_rom::data(black_box(0.0)));
         let contact = Impact::new(ThreeHalves::new(black_box(3e6))?, black_box(1e3), black_box(1e-4))?;
         let friction = Regularised::new(black_box(0.3), black_box(1e-4))?;
-        let limits = black_box(Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2 });
-        let ahead = black_box(Ahead::new(data.body.slide(contact, friction, data.drive)?, limits)?);
-        let mut state: State<f32, _, 6, 256> = black_box(ahead.at_rest(Pose::nominal(), black_box(70)));
+        let limits = black_box(Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 2 });
+        let slide = data.body.slide(contact, friction, data.drive)?.driven_by(Led::led(data.drive.gain))?;
+        let mut ahead = black_box(Ahead::new(slide, limits)?);
+        let command = |t| data.drive.command(t);
+        let mut state: State<f32, _, 6, 256> = black_box(ahead.at_rest(Pose::nominal(), black_box(70), command));
+        black_box(ahead.plan(&mut state, black_box(3), black_box(0.1)));
+        ahead.plan_all(&mut state, command);
+        ahead.follow(&mut state, black_box(0.1));
         black_box(black_box(ahead.step(&mut state)).status());
+        black_box(ahead.forecast(&state, black_box(20)));
         ahead.restart(black_box(&mut state));
         black_box(&state);
         Ok(())

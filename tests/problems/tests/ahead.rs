@@ -8,9 +8,9 @@ use std::{fs, path::Path};
 use slipfit_core::{
     Scalar,
     ahead::{Ahead, Limits, Prediction, State, Status},
+    drive::Led,
     integrator::{Integrator, Rodas4},
     kernel::Kernel,
-    mechanism::Driven,
     menu::{FrictionData, SlideData},
     pose::Pose,
     sampling::{
@@ -29,14 +29,22 @@ const EARLY: u32 = 70;
 /// The ramp's start (ms).
 const RAMP: usize = 50;
 
-const LIMITS: Limits<f32> = Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2 };
+const LIMITS: Limits<f32> = Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 1 };
 
 /// The slide of `data`, every millisecond from its release.
 fn predicted(data: &SlideData<f64>, limits: Limits<f32>, periods: usize) -> Vec<Prediction<f32>> {
     let slide: CdRomSlide<f32> = cd_rom::from_data(&data.cast(|x| x as f32));
-    let ahead = Ahead::new(slide, limits).expect("the limits are in bounds");
-    let mut state: State<f32, _, 6, KEPT> = ahead.at_rest(Pose::nominal(), EARLY);
-    let run: Vec<_> = (0..EARLY as usize + periods).map(|_| ahead.step(&mut state)).collect();
+    let ramp = *slide.drive();
+    let slide = slide.driven_by(Led::led(ramp.gain)).expect("the gain is in bounds");
+    let mut ahead = Ahead::new(slide, limits).expect("the limits are in bounds");
+    let mut state: State<f32, _, 6, KEPT> = ahead.at_rest(Pose::nominal(), EARLY, |t| ramp.command(t));
+    let horizon = ahead.horizon(&state);
+    let mut step = || {
+        let command = ramp.command(ahead.time(&state, horizon + 1));
+        assert!(ahead.plan(&mut state, horizon, command));
+        ahead.step(&mut state)
+    };
+    let run: Vec<_> = (0..EARLY as usize + periods).map(|_| step()).collect();
     run[EARLY as usize - 1..].to_vec()
 }
 
@@ -54,8 +62,8 @@ fn converged(data: &SlideData<f64>, periods: usize) -> Vec<f64> {
         while t < end {
             let length = if t + 1.01 * h >= end { end - t } else { h };
             let step = Rodas4::step(&slide, t, length, &motion);
-            let velocity_error = step.error / slide.mass();
-            let error = (slide.drive().gain * velocity_error).max(step.drift / slide.mass() / 3e-5) / tolerance;
+            let velocity_error = step.error / data.body.mass;
+            let error = (slide.drive().gain * velocity_error).max(step.drift / data.body.mass / 3e-5) / tolerance;
             h = length * (0.8 / Scalar::sqrt(Scalar::sqrt(error.max(1e-12)))).clamp(0.2, 3.0);
             if error <= 1.0 {
                 t = if length == end - t { end } else { t + length };

@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use slipfit_capi::*;
 use slipfit_core::{
     ahead::{Ahead, Limits, Prediction, State},
+    drive::Led,
     menu::FrictionData,
     pose::Pose,
 };
@@ -28,8 +29,11 @@ pub fn ahead_stays_finite(scene: &slipfit_scene, n: f32, limits: &slipfit_ahead_
             prop_assert_eq!(slipfit_ahead_read(&ahead, &mut said), stepped);
             prop_assert_eq!(stepped, if said.lead < 0.0 { SLIPFIT_BEHIND } else { SLIPFIT_OK });
             prop_assert!(said.time.is_finite() && said.velocity.is_finite() && said.lead.is_finite(), "{said:?}");
-            if step == 10 {
-                prop_assert_eq!(slipfit_ahead_restart(&mut ahead, scene, n), SLIPFIT_OK);
+            match step {
+                5 => prop_assert_eq!(slipfit_ahead_follow(&mut ahead, 0.02), SLIPFIT_OK),
+                10 => prop_assert_eq!(slipfit_ahead_restart(&mut ahead, scene, n), SLIPFIT_OK),
+                15 => prop_assert_eq!(slipfit_ahead_rest(&mut ahead, 3), SLIPFIT_OK),
+                _ => {}
             }
         }
     }
@@ -37,7 +41,7 @@ pub fn ahead_stays_finite(scene: &slipfit_scene, n: f32, limits: &slipfit_ahead_
 }
 
 /// What prediction ahead of the clock is held to here.
-pub const LIMITS: slipfit_ahead_limits = slipfit_ahead_limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2 };
+pub const LIMITS: slipfit_ahead_limits = slipfit_ahead_limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 1 };
 
 #[test]
 fn special_numbers_ahead_of_the_clock() {
@@ -55,45 +59,124 @@ fn special_numbers_ahead_of_the_clock() {
     }
 }
 
-/// The same bits as in Rust, through a change of the unit and the command.
+/// The slide of a unit of `scene`.
+pub fn slide(scene: &slipfit_scene, n: f32) -> CdRomSlide<f32> {
+    let mut data = cd_rom::data(0.0f32);
+    data.friction = FrictionData::Regularised { coefficient: 0.3, stick_band: scene.friction_stick_band };
+    data.drive.speed = scene.drive_speed;
+    for (gap, deviation) in data.body.gaps.iter_mut().zip(scene.gap_deviations) {
+        *gap -= n * deviation;
+    }
+    cd_rom::from_data(&data)
+}
+
+/// Arcs of parabolas between -1 and 1, two in `every` periods.
+pub fn wave(period: u32, every: u32) -> f32 {
+    let x = 2.0 * (period % every) as f32 / every as f32;
+    let (sign, x) = if x < 1.0 { (1.0, x) } else { (-1.0, x - 1.0) };
+    sign * 4.0 * x * (1.0 - x)
+}
+
+/// Whether `c` says of a period what Rust says.
+unsafe fn assert_is_rusts(c: &slipfit_ahead, status: slipfit_status, rust: Prediction<f32>, period: usize) {
+    let mut said = zeroed::<slipfit_ahead_prediction>();
+    assert_eq!(status, if rust.lead < 0.0 { SLIPFIT_BEHIND } else { SLIPFIT_OK });
+    // SAFETY: both are there.
+    assert_eq!(unsafe { slipfit_ahead_read(c, &mut said) }, status);
+    let slipfit_ahead_prediction { time, force, velocity, position, deviation, lead, tolerance, excess, forced } = said;
+    let in_c = Prediction { time, force, speed: velocity, position, deviation, lead, tolerance, excess, forced };
+    assert_eq!(in_c, rust, "{period}");
+    let clock = (period as f32 - 69.0) * 1e-3;
+    assert_eq!(time, if status == SLIPFIT_OK { clock } else { clock + lead });
+}
+
+/// The same bits as in Rust, through a change of the unit, a planned command and one that is followed, and across a copy.
 #[test]
 #[cfg_attr(miri, ignore = "too long for an interpreter")]
 fn a_prediction_ahead_of_the_clock_is_rusts() {
-    let slide = |scene: &slipfit_scene, n: f32| -> CdRomSlide<f32> {
-        let mut data = cd_rom::data(0.0f32);
-        data.friction = FrictionData::Regularised { coefficient: 0.3, stick_band: scene.friction_stick_band };
-        data.drive.speed = scene.drive_speed;
-        for (gap, deviation) in data.body.gaps.iter_mut().zip(scene.gap_deviations) {
-            *gap -= n * deviation;
-        }
-        cd_rom::from_data(&data)
-    };
     let (first, second) = (regularised(), slipfit_scene { drive_speed: 0.05, ..regularised() });
-    let slipfit_ahead_limits { period, tolerance, lead, lag } = LIMITS;
-    let limits = Limits { period, tolerance, lead, lag };
-    let mut ahead = Ahead::new(slide(&first, 2.5), limits).unwrap();
-    let mut state: State<f32, _, 6, 256> = ahead.at_rest(Pose::nominal(), 70);
+    let slipfit_ahead_limits { period, tolerance, lead, lag, .. } = LIMITS;
+    let limits = Limits { period, tolerance, lead, lag, attempts: 2 };
+    let (one, other) = (slide(&first, 2.5), slide(&second, 2.0));
+    let made = |of: &CdRomSlide<f32>| Ahead::new(of.driven_by(Led::led(of.drive().gain)).unwrap(), limits).unwrap();
+    let (mut ahead, mut ramp) = (made(&one), *one.drive());
+    let mut state: State<f32, _, 6, 256> = ahead.at_rest(Pose::nominal(), 70, |t| ramp.command(t));
+    let horizon = ahead.horizon(&state);
+    let command = |period: usize| 0.05 * wave(period as u32, 628);
     let (mut c, mut said) = (zeroed::<slipfit_ahead>(), zeroed::<slipfit_ahead_prediction>());
     // SAFETY: every pointer is to a local of its type.
     unsafe {
-        assert_eq!(slipfit_ahead_init(&mut c, &first, 2.5, &LIMITS, 70), SLIPFIT_OK);
+        let limits = slipfit_ahead_limits { attempts: 2, ..LIMITS };
+        assert_eq!(slipfit_ahead_init(&mut c, &first, 2.5, &limits, 70), SLIPFIT_OK);
         assert_eq!(slipfit_ahead_read(&c, &mut said), SLIPFIT_OK);
         assert_eq!((said.time, said.force, said.velocity, said.lead), (-0.07, 0.0, 0.0, 0.07));
-        for period in 0..900 {
-            if period == 400 {
-                assert_eq!(slipfit_ahead_restart(&mut c, &second, 2.0), SLIPFIT_OK);
-                ahead = Ahead::new(slide(&second, 2.0), limits).unwrap();
-                ahead.restart(&mut state);
+        let mut periods = 0;
+        assert_eq!(slipfit_ahead_horizon(&c, &mut periods), SLIPFIT_OK);
+        assert_eq!(periods, horizon);
+        for period in 0..1800 {
+            match period {
+                400 => {
+                    assert_eq!(slipfit_ahead_restart(&mut c, &second, 2.0), SLIPFIT_OK);
+                    (ahead, ramp) = (made(&other), *other.drive());
+                    ahead.restart(&mut state);
+                    ahead.plan_all(&mut state, |t| ramp.command(t));
+                }
+                // A copy is all of it.
+                1000 => {
+                    let copy = c;
+                    assert_eq!(slipfit_ahead_rest(&mut c, 3), SLIPFIT_OK);
+                    c = copy;
+                }
+                _ => {}
+            }
+            match period {
+                0..800 => {
+                    let speed = ramp.command(ahead.time(&state, horizon + 1));
+                    assert!(ahead.plan(&mut state, horizon, speed));
+                }
+                800..1300 => {
+                    assert!(ahead.plan(&mut state, horizon, command(period)));
+                    assert_eq!(slipfit_ahead_plan(&mut c, horizon, command(period)), SLIPFIT_OK);
+                }
+                _ => {
+                    ahead.follow(&mut state, command(period));
+                    assert_eq!(slipfit_ahead_follow(&mut c, command(period)), SLIPFIT_OK);
+                }
             }
             let rust = ahead.step(&mut state);
             let status = slipfit_ahead_step(&mut c);
-            assert_eq!(status, if rust.lead < 0.0 { SLIPFIT_BEHIND } else { SLIPFIT_OK });
-            assert_eq!(slipfit_ahead_read(&c, &mut said), status);
-            let slipfit_ahead_prediction { time, force, velocity, lead, tolerance, excess, forced } = said;
-            let in_c = Prediction { time, force, speed: velocity, lead, tolerance, excess, forced };
-            assert_eq!(in_c, rust, "{period}");
-            let clock = (period as f32 - 69.0) * 1e-3;
-            assert_eq!(time, if status == SLIPFIT_OK { clock } else { clock + lead });
+            assert_is_rusts(&c, status, rust, period);
+            for after in [0, 7, 20] {
+                let mut force = 0.0;
+                let found = slipfit_ahead_forecast(&c, after, &mut force);
+                let forecast = ahead.forecast(&state, after);
+                assert_eq!((found == SLIPFIT_OK).then_some(force), forecast, "{period}");
+            }
+        }
+        // What is predicted already and what is beyond the horizon.
+        assert_eq!(slipfit_ahead_plan(&mut c, 0, 0.0), SLIPFIT_LATE);
+        assert_eq!(slipfit_ahead_plan(&mut c, horizon + 1, 0.0), SLIPFIT_PARAMETER);
+        let mut force = 0.0;
+        assert_eq!(slipfit_ahead_forecast(&c, 1000, &mut force), SLIPFIT_BEHIND);
+        for wrong in [f32::NAN, f32::INFINITY, 1001.0] {
+            assert_eq!(slipfit_ahead_plan(&mut c, horizon, wrong), SLIPFIT_PARAMETER);
+            assert_eq!(slipfit_ahead_follow(&mut c, wrong), SLIPFIT_PARAMETER);
+        }
+        // Nothing has changed by what was refused.
+        ahead.follow(&mut state, 0.01);
+        assert_eq!(slipfit_ahead_follow(&mut c, 0.01), SLIPFIT_OK);
+        let (rust, status) = (ahead.step(&mut state), slipfit_ahead_step(&mut c));
+        assert_is_rusts(&c, status, rust, 1800);
+        // At rest again it is as new.
+        let mut new = zeroed::<slipfit_ahead>();
+        assert_eq!(slipfit_ahead_rest(&mut c, 1001), SLIPFIT_PARAMETER);
+        assert_eq!(slipfit_ahead_rest(&mut c, 50), SLIPFIT_OK);
+        assert_eq!(slipfit_ahead_init(&mut new, &second, 2.0, &limits, 50), SLIPFIT_OK);
+        for _ in 0..300 {
+            assert_eq!(slipfit_ahead_step(&mut c), slipfit_ahead_step(&mut new));
+            let mut same = said;
+            assert_eq!(slipfit_ahead_read(&c, &mut said), slipfit_ahead_read(&new, &mut same));
+            assert_eq!(said, same);
         }
     }
 }
@@ -139,12 +222,20 @@ fn what_cannot_be_predicted_ahead_is_refused() {
             (&regularised(), 1e6, LIMITS, 70, SLIPFIT_PARAMETER),
             (&regularised(), 2.5, slipfit_ahead_limits { lead: 1e-3, ..LIMITS }, 70, SLIPFIT_PARAMETER),
             (&regularised(), 2.5, LIMITS, SLIPFIT_AHEAD_EARLY_MOST + 1, SLIPFIT_PARAMETER),
+            (&regularised(), 2.5, slipfit_ahead_limits { attempts: 0, ..LIMITS }, 70, SLIPFIT_PARAMETER),
+            (&regularised(), 2.5, slipfit_ahead_limits { attempts: u32::MAX, ..LIMITS }, 70, SLIPFIT_PARAMETER),
         ] {
             assert_eq!(slipfit_ahead_init(&mut ahead, &regularised(), 2.5, &LIMITS, 1000), SLIPFIT_OK);
             assert_eq!(slipfit_ahead_init(&mut ahead, scene, n, &limits, early), status);
             assert_eq!(slipfit_ahead_step(&mut ahead), SLIPFIT_NOT_MADE);
             assert_eq!(slipfit_ahead_read(&ahead, &mut said), SLIPFIT_NOT_MADE);
             assert_eq!(slipfit_ahead_restart(&mut ahead, &regularised(), 2.5), SLIPFIT_NOT_MADE);
+            assert_eq!(slipfit_ahead_rest(&mut ahead, 3), SLIPFIT_NOT_MADE);
+            assert_eq!(slipfit_ahead_plan(&mut ahead, 3, 0.1), SLIPFIT_NOT_MADE);
+            assert_eq!(slipfit_ahead_follow(&mut ahead, 0.1), SLIPFIT_NOT_MADE);
+            let (mut periods, mut force) = (0, 0.0);
+            assert_eq!(slipfit_ahead_horizon(&ahead, &mut periods), SLIPFIT_NOT_MADE);
+            assert_eq!(slipfit_ahead_forecast(&ahead, 3, &mut force), SLIPFIT_NOT_MADE);
         }
         for both in [&mut ahead, &mut other] {
             assert_eq!(slipfit_ahead_init(both, &regularised(), 2.5, &LIMITS, 0), SLIPFIT_OK);

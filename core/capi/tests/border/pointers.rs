@@ -25,6 +25,7 @@ fn null_and_misaligned_pointers_are_refused() {
     let mut other_bank = zeroed::<slipfit_bank>();
     let (mut ahead, mut other_ahead) = (zeroed::<slipfit_ahead>(), zeroed::<slipfit_ahead>());
     let mut said_ahead = zeroed::<slipfit_ahead_prediction>();
+    let (mut periods, mut force) = (0u32, 0.0f32);
     // SAFETY: what is neither null nor misaligned points at locals.
     unsafe {
         assert_eq!(slipfit_predictor_init(&mut predictor, &scene, 2.5), SLIPFIT_OK);
@@ -47,6 +48,8 @@ fn null_and_misaligned_pointers_are_refused() {
                 slipfit_predictor_init(bad!(predictor), &scene, 2.5),
                 slipfit_predictor_init(&mut predictor, bad!(scene), 2.5),
                 slipfit_predictor_step(bad!(predictor)),
+                slipfit_predictor_set_command(bad!(predictor), 0.1),
+                slipfit_predictor_restart(bad!(predictor)),
                 slipfit_predictor_read(bad!(predictor), &mut said),
                 slipfit_predictor_read(&predictor, bad!(said)),
                 slipfit_ahead_init(bad!(ahead), &scene, 2.5, &LIMITS, 0),
@@ -55,6 +58,13 @@ fn null_and_misaligned_pointers_are_refused() {
                 slipfit_ahead_step(bad!(ahead)),
                 slipfit_ahead_read(bad!(ahead), &mut said_ahead),
                 slipfit_ahead_read(&ahead, bad!(said_ahead)),
+                slipfit_ahead_rest(bad!(ahead), 0),
+                slipfit_ahead_plan(bad!(ahead), 0, 0.1),
+                slipfit_ahead_follow(bad!(ahead), 0.1),
+                slipfit_ahead_horizon(bad!(ahead), &mut periods),
+                slipfit_ahead_horizon(&ahead, bad!(periods)),
+                slipfit_ahead_forecast(bad!(ahead), 0, &mut force),
+                slipfit_ahead_forecast(&ahead, 0, bad!(force)),
                 slipfit_ahead_restart(bad!(ahead), &scene, 2.5),
                 slipfit_ahead_restart(&mut ahead, bad!(scene), 2.5),
                 slipfit_table_open(bad!(table), bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 7),

@@ -19,6 +19,9 @@ fn stays_finite(scene: &slipfit_scene, n: f32) -> Result<(), TestCaseError> {
         let made = slipfit_predictor_init(&mut predictor, scene, n);
         prop_assert!([SLIPFIT_OK, SLIPFIT_PARAMETER, SLIPFIT_LAW, SLIPFIT_STEP].contains(&made), "{made}");
         for _ in 0..20 {
+            let set = slipfit_predictor_set_command(&mut predictor, n);
+            let is_speed = n.is_finite() && n.abs() <= 1000.0;
+            prop_assert_eq!(set == SLIPFIT_OK, made == SLIPFIT_OK && is_speed, "{}", set);
             let stepped = slipfit_predictor_step(&mut predictor);
             if made == SLIPFIT_OK {
                 prop_assert!([SLIPFIT_OK, SLIPFIT_NOT_FINITE].contains(&stepped), "{stepped}");
@@ -86,6 +89,65 @@ fn what_cannot_be_stepped_is_refused() {
     let mut negative = scene();
     negative.gap_deviations[7] = -1e-9;
     assert_eq!(made(&negative, 2.5), SLIPFIT_PARAMETER);
+}
+
+/// What a drive is told once a period: there and back, a jump, a rest, there and back.
+fn command(period: u32) -> f32 {
+    match period {
+        0..600 => 0.1 * super::ahead::wave(period, 1200),
+        600..700 => -0.05,
+        700..900 => 0.0,
+        _ => 0.08 * super::ahead::wave(period, 310),
+    }
+}
+
+/// Any command has the kernel's bits, also across a copy of the predictor's memory, and from rest again.
+#[test]
+#[cfg_attr(miri, ignore = "too long for an interpreter")]
+#[cfg(not(feature = "exact"))]
+fn a_command_that_is_set_is_the_kernels() {
+    use slipfit_core::{drive::Commandable, integrator::ImplicitEuler, kernel::Kernel, pose::Pose};
+    let mut kernel =
+        Kernel::<f32, _, ImplicitEuler<4>>::new(super::ahead::slide(&scene(), 2.5), scene().step).unwrap();
+    let (mut c, mut said) = (zeroed::<slipfit_predictor>(), zeroed::<slipfit_prediction>());
+    // SAFETY: every pointer is to a local of its type.
+    unsafe {
+        assert_eq!(slipfit_predictor_init(&mut c, &scene(), 2.5), SLIPFIT_OK);
+        for from_rest in 0..2 {
+            let mut state = kernel.at_rest(Pose::nominal());
+            for period in 0..2000 {
+                kernel.mechanism_mut().drive_mut().set_command(command(period));
+                let report = kernel.step(&mut state);
+                assert_eq!(slipfit_predictor_set_command(&mut c, command(period)), SLIPFIT_OK);
+                if period == 1000 {
+                    let saved = c;
+                    for _ in 0..5 {
+                        assert_eq!(slipfit_predictor_step(&mut c), SLIPFIT_OK);
+                    }
+                    c = saved;
+                }
+                assert_eq!(slipfit_predictor_step(&mut c), SLIPFIT_OK);
+                assert_eq!(slipfit_predictor_read(&c, &mut said), SLIPFIT_OK);
+                let (time, velocity) = (kernel.time(state.steps), state.motion.velocity.z);
+                let expected = slipfit_prediction {
+                    time,
+                    force: kernel.mechanism().drive().force(time, velocity),
+                    velocity,
+                    position: state.motion.pose.displacement_w.z,
+                    residual: report.residual,
+                };
+                assert_eq!(said, expected, "{from_rest} {period}");
+                // At the end of the rest.
+                assert!(period != 899 || velocity.abs() < 1e-5, "{velocity}");
+            }
+            for wrong in [f32::NAN, f32::NEG_INFINITY, 1001.0] {
+                assert_eq!(slipfit_predictor_set_command(&mut c, wrong), SLIPFIT_PARAMETER);
+            }
+            assert_eq!(slipfit_predictor_restart(&mut c), SLIPFIT_OK);
+            assert_eq!(slipfit_predictor_read(&c, &mut said), SLIPFIT_OK);
+            assert_eq!((said.time, said.velocity, said.position, said.residual), (0.0, 0.0, 0.0, 0.0));
+        }
+    }
 }
 
 proptest! {

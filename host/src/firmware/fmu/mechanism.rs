@@ -139,17 +139,16 @@ fn set_friction(joints: &[(&str, &Joint)], variables: &mut Variables, model: &mu
 }
 
 fn set_drives(drives: &[(&str, &NamedDrive)], variables: &mut Variables, model: &mut Model) {
-    let mut set = |causality, field: &str, name: &str, units: [&'static str; 2], what: &str| {
-        for (at, drive) in drives {
-            let unit = drive.action.kind().choose(units[0], units[1]);
-            let start = if field == "gain" { drive.drive.gain } else { drive.drive.speed };
-            let what = format!("{what} of the drive {}", drive.name);
-            let value = variables.set(causality, format!("{name}.{}", drive.name), unit, start, what);
-            let _ = writeln!(model.changes, "        elements{at}.law.0.{field} = {value} as f32;");
-        }
-    };
-    set(Causality::Tunable, "gain", "gain", ["N.s/m", "N.m.s/rad"], "gain");
-    set(Causality::Input, "speed", "command", ["m/s", "rad/s"], "commanded speed at the end of the ramp");
+    for (at, NamedDrive { action, drive, name, .. }) in drives {
+        let (unit, what) = (action.kind().choose("N.s/m", "N.m.s/rad"), format!("gain of the drive {name}"));
+        let gain = variables.set(Causality::Tunable, format!("gain.{name}"), unit, drive.gain, what);
+        let _ = writeln!(model.changes, "        elements{at}.law.0.gain = {gain} as f32;");
+    }
+    for (at, NamedDrive { action, drive, name, .. }) in drives {
+        let (unit, what) = (action.kind().choose("m/s", "rad/s"), format!("{} of the drive {name}", model::COMMAND));
+        let speed = variables.set(Causality::Input, format!("command.{name}"), unit, drive.speed, what);
+        model.changes.push_str(&model::command(&format!("elements{at}.law.0"), &speed));
+    }
     for (at, _) in drives {
         let _ = writeln!(model.changes, "        elements{at}.law.0 = elements{at}.law.0.checked()?;");
     }
@@ -344,12 +343,11 @@ fn source(token: &str, mechanism: &Mechanism, variables: &[super::Variable], mod
         "{constants}use slipfit_core::{{SVector, kernel::{{Kernel, Report}}{laws}, system::{{Bodies, Element, Link, Reduced, System}}}};\n\n\
          use crate::instance::{{Trouble{gap}}};\n\n\
          /// The kernel of some values.\n#[derive(Clone, Copy)]\npub struct Model(kernel::Parameters);\n\n\
-         impl Model {{\n    pub fn new(values: &[f64; VALUES]) -> Result<Self, Trouble> {{\n        \
+         impl Model {{\n    #[allow(unused_variables)]\n    pub fn new(values: &[f64; VALUES], told: &[bool; VALUES]) -> Result<Self, Trouble> {{\n        \
          let unit = kernel::unit::<f32>(values[0] as f32)?;\n        \
          #[allow(unused_mut)]\n        let mut elements = *unit.elements();\n{changes}        \
          Ok(Self(Kernel::new(System::new(*unit.bodies(), elements), kernel::STEP)?))\n    }}\n\n    \
-         /// Where it starts.\n    pub fn start(&self) -> State {{\n        let (pose, velocity) = kernel::start();\n        \
-         let mut state = self.0.at_rest(pose);\n        state.motion.velocity = velocity;\n        state\n    }}\n\n    \
+         /// Where it starts.\n    pub fn start(&self) -> State {{\n        kernel::at_start(&self.0)\n    }}\n\n    \
          pub fn step(&self, state: &mut State) -> Report<f32> {{\n        kernel::step(&self.0, state)\n    }}\n\n    \
          #[allow(unused_variables)]\n    \
          pub fn outputs(&self, state: &State, report: &Report<f32>) -> [f64; OUTPUTS] {{\n        \

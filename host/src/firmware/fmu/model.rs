@@ -34,6 +34,19 @@ pub(super) fn gap(name: &str, mean: &str, deviation: &str, allowed: [f64; 2]) ->
     format!("gap({name:?}, {mean}, {deviation}, values[0], {allowed:?})?")
 }
 
+/// What the description says of a command whose start value is the end of the scene's ramp.
+pub(super) const COMMAND: &str = "commanded speed; as it is when the first step is taken it is the end of the scene's ramp, and set \
+                                  after that it is the command at once";
+
+/// Statements that give the `drive` its command `value`, an expression of what is set.
+pub(super) fn command(drive: &str, value: &str) -> String {
+    format!(
+        "        if {} {{\n            slipfit_core::drive::Commandable::set_command(&mut {drive}, {value} as f32);\n        }} else {{\n            \
+         {drive}.speed = {value} as f32;\n        }}\n",
+        value.replace("values", "told")
+    )
+}
+
 /// The friction law's name in core and its value for an expression of its coefficient.
 pub(super) fn friction(
     data: slipfit_core::menu::FrictionData<f64>,

@@ -42,9 +42,8 @@ pub fn slide_unit(scene: &Scene, core: &Path) -> Unit {
     });
     let gain = variables.set(Tunable, "drive.gain", "N.s/m", scene.drive.gain, "gain of the drive");
     let _ = writeln!(body, "        unit.drive.gain = {gain} as f32;");
-    let command = "commanded speed at the end of the ramp; during the ramp the share of it that the ramp has reached";
-    let speed = variables.set(Input, "command", "m/s", scene.drive.speed, command);
-    let _ = writeln!(body, "        unit.drive.speed = {speed} as f32;");
+    let speed = variables.set(Input, "command", "m/s", scene.drive.speed, model::COMMAND);
+    body.push_str(&model::command("unit.drive", &speed));
     for axis in ["x", "y", "z"] {
         let load = format!("external force on the slide along {axis}, at its centre of mass");
         let load = variables.set(Input, format!("load.{axis}"), "N", 0.0, load);
@@ -83,7 +82,7 @@ pub fn slide_unit(scene: &Scene, core: &Path) -> Unit {
          use slipfit_core::{{kernel::{{Kernel, Report}}, law::{{{elastic}, {friction}, Impact}}, menu::ContactData, slide::Slide}};\n\n\
          use crate::instance::{{Trouble, gap}};\n\n\
          /// The kernel of some values.\n#[derive(Clone, Copy)]\npub struct Model(Predictor);\n\n\
-         impl Model {{\n    pub fn new(values: &[f64; VALUES]) -> Result<Self, Trouble> {{\n        \
+         impl Model {{\n    pub fn new(values: &[f64; VALUES], told: &[bool; VALUES]) -> Result<Self, Trouble> {{\n        \
          let mut unit = SCENE.at(values[0] as f32)?;\n{body}        \
          let ContactData {{ stiffness, {exponent}damping, depth, .. }} = unit.contact;\n        \
          let contact = Impact::new({made_elastic}, damping, depth)?;\n        \

@@ -119,12 +119,15 @@ pub fn rust_source(mechanism: &Mechanism) -> Result<String, RunError> {
          let pose = {};\n    (pose, SVector::from([{}]))\n}}\n\n\
          /// A kernel and the state that it steps.\n\
          pub type Predictor = (Kernel<f32, Unit<f32>, Scheme>, StateOf<f32, Unit<f32>, {dimension}>);\n\n\
+         /// The state of a unit's `kernel` at the start.\n\
+         pub fn at_start(kernel: &Kernel<f32, Unit<f32>, Scheme>) -> StateOf<f32, Unit<f32>, {dimension}> {{\n    \
+         let (pose, velocity) = start();\n    let mut state = kernel.at_rest(pose);\n    \
+         state.motion.velocity = velocity;\n    state\n}}\n\n\
          /// The kernel of the unit of tolerance level `n` and its state at the start.\n///\n/// # Errors\n\
          /// If a gap at that level, or another parameter, is out of bounds.\n\
          pub fn predictor(n: f32) -> Result<Predictor, \
          ParameterError<f32>> {{\n    let kernel = Kernel::new(unit(n)?, STEP)?;\n    \
-         let (pose, velocity) = start();\n    let mut state = kernel.at_rest(pose);\n    \
-         state.motion.velocity = velocity;\n    Ok((kernel, state))\n}}\n",
+         let state = at_start(&kernel);\n    Ok((kernel, state))\n}}\n",
         pose.of,
         pose.value,
         rates.join(", ")
@@ -153,7 +156,7 @@ fn write_hashes(text: &mut String, mechanism: &Mechanism) {
     };
 }
 
-/// A function for each drive that says what it gives. Drives are the last elements.
+/// Functions for each drive that say what it gives, and tell it a command. Drives are the last elements.
 fn write_drives(mechanism: &Mechanism, parts: &Parts) -> String {
     let first = parts.elements.len() - mechanism.drives.len();
     let paths = parts.paths();
@@ -165,12 +168,18 @@ fn write_drives(mechanism: &Mechanism, parts: &Parts) -> String {
             text,
             "\n/// Speed ({}) and {} ({}) of the drive {:?} at time `t` (s).\n\
              pub fn {name}<S: Scalar>(unit: &Unit<S>, t: S, pose: &{}, velocity: &SVector<S, DIMENSION>) -> Driving<S> {{\n    \
-             unit.{driving}(&unit.elements(){at}, t, pose, velocity)\n}}\n",
+             unit.{driving}(&unit.elements(){at}, t, pose, velocity)\n}}\n\n\
+             /// From now on the commanded speed ({}) of the drive {:?} is `speed`, in place of the scene's, until another one is set.\n\
+             pub fn {}<S: Scalar>(unit: &mut Unit<S>, speed: S) {{\n    \
+             slipfit_core::drive::Commandable::set_command(&mut unit.elements_mut(){at}.law.0, speed);\n}}\n",
             kind.choose("m/s", "rad/s"),
             kind.effort(),
             kind.effort_unit(),
             drive.name,
             parts.pose.of,
+            kind.choose("m/s", "rad/s"),
+            drive.name,
+            command_name(&name),
         );
     }
     text
@@ -191,6 +200,11 @@ pub fn element_paths(mechanism: &Mechanism) -> Result<Vec<(String, Option<&Joint
 /// If the mechanism has no run, see [`RunError`].
 pub fn dimension(mechanism: &Mechanism) -> Result<usize, RunError> {
     Ok(parts(mechanism, &mut Contacts::default())?.dimension)
+}
+
+/// What the function is called that tells a drive its command, whose own is called `drive_name`.
+pub fn command_name(drive_name: &str) -> String {
+    drive_name.replacen("drive", "command", 1)
 }
 
 /// What the functions of the drives are called; those that would be called the same have their number.

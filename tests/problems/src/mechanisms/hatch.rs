@@ -77,19 +77,30 @@ pub fn start<S: Scalar>() -> ([Pose<S>; 1], SVector<S, 6>) {
 /// A kernel and the state that it steps.
 pub type Predictor = (Kernel<f32, Unit<f32>, Scheme>, StateOf<f32, Unit<f32>, 6>);
 
+/// The state of a unit's `kernel` at the start.
+pub fn at_start(kernel: &Kernel<f32, Unit<f32>, Scheme>) -> StateOf<f32, Unit<f32>, 6> {
+    let (pose, velocity) = start();
+    let mut state = kernel.at_rest(pose);
+    state.motion.velocity = velocity;
+    state
+}
+
 /// The kernel of the unit of tolerance level `n` and its state at the start.
 ///
 /// # Errors
 /// If a gap at that level, or another parameter, is out of bounds.
 pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
     let kernel = Kernel::new(unit(n)?, STEP)?;
-    let (pose, velocity) = start();
-    let mut state = kernel.at_rest(pose);
-    state.motion.velocity = velocity;
+    let state = at_start(&kernel);
     Ok((kernel, state))
 }
 
 /// Speed (rad/s) and torque (N·m) of the drive "motor" at time `t` (s).
 pub fn drive_motor<S: Scalar>(unit: &Unit<S>, t: S, pose: &[Pose<S>; 1], velocity: &SVector<S, DIMENSION>) -> Driving<S> {
     unit.driving(&unit.elements().1.1.1.1, t, pose, velocity)
+}
+
+/// From now on the commanded speed (rad/s) of the drive "motor" is `speed`, in place of the scene's, until another one is set.
+pub fn command_motor<S: Scalar>(unit: &mut Unit<S>, speed: S) {
+    slipfit_core::drive::Commandable::set_command(&mut unit.elements_mut().1.1.1.1.law.0, speed);
 }

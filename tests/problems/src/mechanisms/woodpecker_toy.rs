@@ -83,14 +83,20 @@ pub fn start<S: Scalar>() -> ([[S; 2]; 3], SVector<S, 3>) {
 /// A kernel and the state that it steps.
 pub type Predictor = (Kernel<f32, Unit<f32>, Scheme>, StateOf<f32, Unit<f32>, 3>);
 
+/// The state of a unit's `kernel` at the start.
+pub fn at_start(kernel: &Kernel<f32, Unit<f32>, Scheme>) -> StateOf<f32, Unit<f32>, 3> {
+    let (pose, velocity) = start();
+    let mut state = kernel.at_rest(pose);
+    state.motion.velocity = velocity;
+    state
+}
+
 /// The kernel of the unit of tolerance level `n` and its state at the start.
 ///
 /// # Errors
 /// If a gap at that level, or another parameter, is out of bounds.
 pub fn predictor(n: f32) -> Result<Predictor, ParameterError<f32>> {
     let kernel = Kernel::new(unit(n)?, STEP)?;
-    let (pose, velocity) = start();
-    let mut state = kernel.at_rest(pose);
-    state.motion.velocity = velocity;
+    let state = at_start(&kernel);
     Ok((kernel, state))
 }

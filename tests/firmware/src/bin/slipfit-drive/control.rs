@@ -3,6 +3,7 @@
 use slipfit_core::{
     ParameterError,
     ahead::{self, Ahead},
+    drive::{Drive, Led},
     law::{Friction, Impact, Regularised, ThreeHalves},
     menu::ContactData,
     monitor::{LevelBank, Limits, Monitor, Sample, Verdict, Watch},
@@ -26,14 +27,17 @@ const EARLY: u32 = 70;
 const STICK_BAND: f32 = 1e-5;
 
 /// The prediction of a unit, ahead of the clock.
-pub type Prediction = Ahead<f32, Slide<f32, ThreeHalves<f32>, Regularised<f32>>>;
+pub type Prediction = Ahead<f32, Slide<f32, ThreeHalves<f32>, Regularised<f32>, [f32; 4], Led<f32>>>;
 
 /// What it keeps: too much for the stack, so that there is one, in its place.
 pub type Motions = ahead::State<f32, Pose<f32>, 6, 128>;
 
 /// A function of its own, so that its stack does not add up with that of the rest.
 #[inline(never)]
-fn step(prediction: &Prediction, motions: &mut Motions) -> ahead::Prediction<f32> {
+fn step((prediction, ramp): &mut (Prediction, Drive<f32>), motions: &mut Motions) -> ahead::Prediction<f32> {
+    let horizon = prediction.horizon(motions);
+    let speed = ramp.command(prediction.time(motions, horizon + 1));
+    prediction.plan(motions, horizon, speed);
     prediction.step(motions)
 }
 
@@ -60,7 +64,8 @@ pub struct Record {
 /// All that watches a unit.
 pub struct Control {
     periods: u32,
-    prediction: Prediction,
+    /// With the ramp that the command takes.
+    prediction: (Prediction, Drive<f32>),
     /// Given to the next control.
     pub motions: &'static mut Motions,
     monitor: Monitor<'static, F32Nodes<'static>>,
@@ -87,14 +92,16 @@ pub fn unit<F: Friction<f32>>(
     unit.body.slide(contact, law(unit.friction.coefficient())?, unit.drive)
 }
 
-/// The prediction of a unit of `level`.
+/// The prediction of a unit of `level`, and the ramp that its command takes.
 ///
 /// # Panics
 /// If the level is out of bounds.
-pub fn prediction(level: f32) -> Prediction {
-    let limits = ahead::Limits { period: STEP, tolerance: 7e-5, lead: 0.2, lag: 0.2 };
-    let unit = unit(level, |coefficient| Regularised::new(coefficient, STICK_BAND));
-    unit.and_then(|unit| Ahead::new(unit, limits)).expect("the level is in bounds")
+pub fn prediction(level: f32) -> (Prediction, Drive<f32>) {
+    let limits = ahead::Limits { period: STEP, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 1 };
+    let unit = unit(level, |coefficient| Regularised::new(coefficient, STICK_BAND)).expect("the level is in bounds");
+    let ramp = *unit.drive();
+    let led = unit.driven_by(Led::led(ramp.gain)).and_then(|led| Ahead::new(led, limits));
+    (led.expect("the scene's gain is in bounds"), ramp)
 }
 
 impl Control {
@@ -104,9 +111,10 @@ impl Control {
     /// # Panics
     /// If the level is out of bounds or the table is not one in f32 over few levels and time.
     pub fn new(taken_for: f32, noise: f32, (flashed, region): Flashed, motions: &'static mut Motions) -> Self {
-        let prediction = prediction(taken_for);
-        prediction.put_at_rest(motions, Pose::nominal(), EARLY);
-        (0..EARLY).for_each(|_| _ = step(&prediction, motions));
+        let mut prediction = prediction(taken_for);
+        let ramp = prediction.1;
+        prediction.0.put_at_rest(motions, Pose::nominal(), EARLY, |t| ramp.command(t));
+        (0..EARLY).for_each(|_| _ = step(&mut prediction, motions));
         let table = flashed.f32().expect("the table's values are f32");
         let limits = Limits { blind: 0.2, force_most: 3.5, ..Limits::for_noise(STEP, noise) };
         Self {
@@ -132,7 +140,7 @@ impl Control {
         self.periods = self.periods.saturating_add(1);
 
         let start = clock();
-        let ahead::Prediction { force: predicted, lead, .. } = step(&self.prediction, self.motions);
+        let ahead::Prediction { force: predicted, lead, .. } = step(&mut self.prediction, self.motions);
         let report = self.monitor.step(&mut self.watch, sample);
         self.bank.add(sample.time, sample.force);
         if self.scrubber.check(self.region, SCRUBBED).is_err() {

@@ -58,7 +58,7 @@ pub fn run(machine: &mut impl Ticking, flash: &'static [u8]) -> bool {
             return false;
         }
     };
-    let mut motions = machine.motions(|| prediction(RIGS[0].1.taken_for).at_rest(Pose::nominal(), 0));
+    let mut motions = machine.motions(|| prediction(RIGS[0].1.taken_for).0.at_rest(Pose::nominal(), 0, |_| 0.0));
     let mut costs = Count::default();
     for (name, rig) in RIGS {
         say::rig(machine, name, &rig);

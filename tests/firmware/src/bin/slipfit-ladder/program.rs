@@ -5,7 +5,7 @@ use core::{fmt::Display, hint::black_box};
 use slipfit_core::{
     Vector2,
     ahead::{self, Ahead, Prediction},
-    drive::Drive,
+    drive::{Drive, Led},
     integrator::{ImplicitEuler, Integrator},
     kernel::{Kernel, Report, StateOf},
     law::{
@@ -74,32 +74,51 @@ macro_rules! rungs {
     )*};
 }
 
-/// A slide ahead of the clock, and the motions it keeps.
-type SlideAhead = Ahead<f32, Unit<ThreeHalves<f32>, Regularised<f32>>>;
+/// A slide ahead of the clock of its ramp, and the motions it keeps.
+type SlideAhead = Ahead<f32, Slide<f32, ThreeHalves<f32>, Regularised<f32>, [f32; 4], Led<f32>>>;
 type SlideAheadState = ahead::State<f32, Pose<f32>, 6, 256>;
 
+/// A prediction, the ramp that its command takes, and its motions.
+struct AlongRamp {
+    ahead: SlideAhead,
+    ramp: Drive<f32>,
+    state: SlideAheadState,
+}
+
+impl AlongRamp {
+    fn new(slide: Unit<ThreeHalves<f32>, Regularised<f32>>) -> Self {
+        let limits = ahead::Limits { period: STEP, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 1 };
+        let ramp = *slide.drive();
+        let slide = slide.driven_by(Led::led(ramp.gain)).expect("the gain is in bounds");
+        let ahead = Ahead::new(slide, limits).expect("the limits are in bounds");
+        Self { state: ahead.at_rest(Pose::nominal(), EARLY, |t| ramp.command(t)), ahead, ramp }
+    }
+}
+
+/// A period of a command that is known in advance.
 #[inline(never)]
-fn slide_ahead(ahead: &SlideAhead, state: &mut SlideAheadState) -> Prediction<f32> {
+fn slide_ahead((): &(), AlongRamp { ahead, ramp, state }: &mut AlongRamp) -> Prediction<f32> {
+    let horizon = ahead.horizon(state);
+    let speed = ramp.command(ahead.time(state, horizon + 1));
+    ahead.plan(state, horizon, speed);
     ahead.step(state)
 }
 
 /// Predicts ahead of the clock.
 fn ahead(machine: &mut impl Machine, slide: Unit<ThreeHalves<f32>, Regularised<f32>>) {
-    let limits = ahead::Limits { period: STEP, tolerance: 7e-5, lead: 0.2, lag: 0.2 };
-    let ahead = black_box(Ahead::new(slide, limits).expect("the limits are in bounds"));
-    let mut state: SlideAheadState = ahead.at_rest(Pose::nominal(), EARLY);
+    let mut run = black_box(AlongRamp::new(slide));
     let (mut count, mut forces) = (Count::default(), Fingerprint::default());
     for _ in 0..STEPS {
-        count.add(counted(machine, &ahead, &mut state, slide_ahead));
+        count.add(counted(machine, &(), &mut run, slide_ahead));
     }
-    let mut again: SlideAheadState = ahead.at_rest(Pose::nominal(), EARLY);
-    (0..STEPS).for_each(|_| forces.add(slide_ahead(&ahead, &mut again).force));
-    let (parameters, bytes) = (size_of_val(&ahead), size_of_val(&state));
+    let mut again = AlongRamp::new(slide);
+    (0..STEPS).for_each(|_| forces.add(slide_ahead(&(), &mut again).force));
+    let (parameters, bytes) = (size_of_val(&run.ahead), size_of_val(&run.state));
     print(machine, format_args!("slide_ahead: parameters {parameters} bytes, state {bytes} bytes, {forces}"));
     if let Some(range) = count.range() {
         print(machine, format_args!("instructions of slide_ahead: {range}"));
     }
-    if let Some(bytes) = machine.stack(|| _ = black_box(slide_ahead(&ahead, &mut state))) {
+    if let Some(bytes) = machine.stack(|| _ = black_box(slide_ahead(&(), &mut run))) {
         print(machine, format_args!("stack of slide_ahead: {bytes} bytes"));
     }
 }
