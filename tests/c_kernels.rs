@@ -12,7 +12,7 @@ use slipfit::{
     scene::{CD_ROM_SLIDE, Override, SceneFile, shipped},
     setup::Scene,
 };
-use slipfit_core::pose::Pose;
+use slipfit_core::{drive::Commandable as _, pose::Pose};
 use slipfit_problems::mechanisms;
 use slipfit_tests::cross::{self, TARGET, cargo, printed};
 
@@ -26,7 +26,7 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 /// Level of the units.
 const LEVEL: f32 = 1.5;
 
-/// A C program for the kernel NAME, whose drive has the function NAME_DRIVE: a hash of the bits of all that the drive gives and sees.
+/// A C program for the kernel NAME, whose drive has the functions NAME_DRIVE and NAME_COMMAND: a hash of the bits of all that the drive gives and sees.
 const PROGRAM: &str = r#"#include "NAME.h"
 
 #include <stddef.h>
@@ -82,6 +82,29 @@ int main(void) {
         NAME_driven found = NAME_DRIVE(&unit);
         hash = add(add(hash, found.effort), found.speed);
     }
+    /* From the start again by a command that is told. What is none is refused, and a copy is the unit as it was. */
+    if (NAME_restart(&unit) != UPPER_OK || NAME_time(&unit) != 0.0f || NAME_COMMAND(&unit, 1e9f) != UPPER_OUT_OF_BOUNDS ||
+        NAME_restart(NULL) != UPPER_NULL || NAME_COMMAND(misaligned, 0.0f) != UPPER_MISALIGNED ||
+        NAME_restart(&memory) != UPPER_NOT_MADE || NAME_COMMAND(&memory, 0.0f) != UPPER_NOT_MADE) {
+        put("no command\n");
+    }
+    for (int i = 0; i < STEPS; i++) {
+        if (NAME_COMMAND(&unit, 0.001f * (float)(i % 64 - 16)) != UPPER_OK) {
+            put("not told\n");
+        }
+        if (i == STEPS / 2) {
+            NAME_unit copy = unit;
+            if (NAME_step(&unit) != UPPER_OK || NAME_restart(&unit) != UPPER_OK) {
+                put("held\n");
+            }
+            unit = copy;
+        }
+        if (NAME_step(&unit) != UPPER_OK) {
+            put("held\n");
+        }
+        NAME_driven found = NAME_DRIVE(&unit);
+        hash = add(add(hash, found.effort), found.speed);
+    }
     for (int i = 0; i < 16; i++) {
         text[i] = "0123456789abcdef"[hash >> (60 - 4 * i) & 15u];
     }
@@ -98,8 +121,15 @@ struct Kernel {
     name: &'static str,
     /// Function of the drive, without the crate's name.
     drive: &'static str,
-    steps: u32,
+    /// The function that tells it a command.
+    command: &'static str,
+    steps: i32,
     expected: String,
+}
+
+/// What the program tells the drive before step `i`.
+fn command(i: i32) -> f32 {
+    0.001 * (i % 64 - 16) as f32
 }
 
 /// FNV-1a over the bits of numbers, as the program prints it.
@@ -112,40 +142,54 @@ fn hashed(numbers: impl Iterator<Item = [f32; 2]>) -> String {
 
 /// The scene of the committed module: the paper's slide with exact friction.
 fn slide_of() -> Kernel {
-    let kernel = slide::predictor(LEVEL).expect("the level is in bounds");
-    let mut state = kernel.at_rest(Pose::nominal());
+    let mut kernel = slide::predictor(LEVEL).expect("the level is in bounds");
     let steps = 300;
-    let seen = (0..steps).map(|_| {
-        let _ = kernel.step(&mut state);
-        let speed = state.motion.velocity.z;
-        [kernel.mechanism().drive().force(kernel.time(state.steps), speed), speed]
-    });
-    Kernel { name: "cd-rom-slide", drive: "drive", steps, expected: hashed(seen) }
+    let mut seen = Vec::new();
+    for is_told in [false, true] {
+        let mut state = kernel.at_rest(Pose::nominal());
+        for i in 0..steps {
+            if is_told {
+                kernel.mechanism_mut().drive_mut().set_command(command(i));
+            }
+            let _ = kernel.step(&mut state);
+            let speed = state.motion.velocity.z;
+            seen.push([kernel.mechanism().drive().force(kernel.time(state.steps), speed), speed]);
+        }
+    }
+    Kernel { name: "cd-rom-slide", drive: "drive", command: "command", steps, expected: hashed(seen.into_iter()) }
 }
 
 macro_rules! of_mechanisms {
-    ($($module:ident, $name:literal, $drive:ident, $steps:literal;)*) => {[$({
-        let (kernel, mut state) = mechanisms::$module::predictor(LEVEL).expect("the level is in bounds");
-        let seen = (0..$steps).map(|_| {
-            let _ = kernel.step(&mut state);
-            let (time, motion) = (kernel.time(state.steps), &state.motion);
-            let found = mechanisms::$module::$drive(kernel.mechanism(), time, &motion.pose, &motion.velocity);
-            [found.effort, found.speed]
-        });
-        Kernel { name: $name, drive: stringify!($drive), steps: $steps, expected: hashed(seen) }
+    ($($module:ident, $name:literal, $drive:ident, $command:ident, $steps:literal;)*) => {[$({
+        let (mut kernel, _) = mechanisms::$module::predictor(LEVEL).expect("the level is in bounds");
+        let mut seen = Vec::new();
+        for is_told in [false, true] {
+            let mut state = mechanisms::$module::at_start(&kernel);
+            for i in 0..$steps {
+                if is_told {
+                    mechanisms::$module::$command(kernel.mechanism_mut(), command(i));
+                }
+                let _ = kernel.step(&mut state);
+                let (time, motion) = (kernel.time(state.steps), &state.motion);
+                let found = mechanisms::$module::$drive(kernel.mechanism(), time, &motion.pose, &motion.velocity);
+                seen.push([found.effort, found.speed]);
+            }
+        }
+        let (drive, command, expected) = (stringify!($drive), stringify!($command), hashed(seen.into_iter()));
+        Kernel { name: $name, drive, command, steps: $steps, expected }
     }),*]};
 }
 
 /// Every shipped mechanism with a drive.
 fn kernels() -> Vec<Kernel> {
     let mechanisms = of_mechanisms! {
-        four_bar, "four-bar", drive_motor, 300;
-        ball_rod, "ball-rod", drive_motor, 300;
-        hatch, "int", drive_motor, 300;
-        linear_guide, "linear-guide", drive_motor, 300;
-        slider_crank, "slider-crank", drive_motor, 300;
-        slider_crank_guide, "slider-crank-guide", drive_motor, 300;
-        telescopic_drawer, "telescopic-drawer", drive_motor, 300;
+        four_bar, "four-bar", drive_motor, command_motor, 300;
+        ball_rod, "ball-rod", drive_motor, command_motor, 300;
+        hatch, "int", drive_motor, command_motor, 300;
+        linear_guide, "linear-guide", drive_motor, command_motor, 300;
+        slider_crank, "slider-crank", drive_motor, command_motor, 300;
+        slider_crank_guide, "slider-crank-guide", drive_motor, command_motor, 300;
+        telescopic_drawer, "telescopic-drawer", drive_motor, command_motor, 300;
     };
     mechanisms.into_iter().chain([slide_of()]).collect()
 }
@@ -163,7 +207,7 @@ fn workspace(kernels: &[Kernel]) -> PathBuf {
         fs::write(path, text).expect("the test's folder takes files");
     };
     let core = Path::new(ROOT).join("core");
-    for Kernel { name, drive, steps, .. } in kernels {
+    for Kernel { name, drive, command, steps, .. } in kernels {
         let files = if *name == "cd-rom-slide" {
             let set = ["friction.law=exact"].map(Override::set);
             slide_crate(&Scene::parse(name, CD_ROM_SLIDE, &set).expect("a shipped scene"), name, Some(&core))
@@ -178,6 +222,7 @@ fn workspace(kernels: &[Kernel]) -> PathBuf {
         let prefix = name.replace('-', "_");
         let program = PROGRAM
             .replace("NAME_DRIVE", &format!("{prefix}_{drive}"))
+            .replace("NAME_COMMAND", &format!("{prefix}_{command}"))
             .replace("NAME", &prefix)
             .replace("UPPER", &prefix.to_uppercase())
             .replace("LEVEL", &format!("{LEVEL:?}"))

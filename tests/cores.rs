@@ -40,6 +40,8 @@ struct Costs {
     object: u32,
     states: String,
     code: u32,
+    /// The most instructions of a lookup with floating point, and in integers.
+    lookups: [u32; 2],
 }
 
 impl Core {
@@ -47,7 +49,7 @@ impl Core {
         let image = cross::image_for(FOLDER, self.target, self.cpu);
         let text = printed(self.emulator().arg("-kernel").arg(&image));
         let words: Vec<_> = text.split_whitespace().collect();
-        let [least, greatest, stack, object, states] = words[..] else { panic!("{text}") };
+        let [least, greatest, stack, object, states, _, float, _, integers] = words[..] else { panic!("{text}") };
         let number = |word: &str| word.parse().expect("a number");
         Costs {
             least: number(least),
@@ -56,6 +58,7 @@ impl Core {
             object: number(object),
             states: states.to_owned(),
             code: code(&image),
+            lookups: [float, integers].map(number),
         }
     }
 
@@ -102,17 +105,22 @@ impl Costs {
 fn every_core_has_the_bits_of_the_pc() {
     let on_pc = Steps::on(&mut Desk).states.to_string();
     let mut table = String::from(
-        "core        target                         target-cpu  instructions of a step  code B  stack B  object B\n",
+        "core        target                         target-cpu  instructions of a step  code B  stack B  object B  lookup, f32  i32\n",
     );
     for (Core { name, target, cpu, .. }, costs) in CORES.iter().zip(&*COSTS) {
         assert_eq!(costs.states, on_pc, "{name}, {target}");
         let (cpu, count) = (cpu.unwrap_or("-"), costs.instructions(|count| count.to_string()));
         // No instruction of these branches on numbers. RISC-V has none that selects without a branch.
         assert!(costs.least == costs.greatest || !target.ends_with("eabihf"), "{name}: {count}");
-        let Costs { code, stack, object, .. } = costs;
+        let Costs { code, stack, object, lookups: [float, integers], .. } = costs;
+        // Without a floating-point unit, integers are what a lookup has time for.
+        assert!(*integers <= 400, "{name}: {integers}");
         // The image for RISC-V does not measure its stack.
         let stack = if *stack == 0 { "-".to_owned() } else { stack.to_string() };
-        let _ = writeln!(table, "{name:10}  {target:29}  {cpu:10}  {count:>22}  {code:6}  {stack:>7}  {object:8}");
+        let _ = writeln!(
+            table,
+            "{name:10}  {target:29}  {cpu:10}  {count:>22}  {code:6}  {stack:>7}  {object:8}  {float:11}  {integers:3}"
+        );
     }
     insta::assert_snapshot!("steps", table);
 }
@@ -125,7 +133,8 @@ fn the_guide_has_these_costs() {
         let cpu = cpu.map_or("none".to_owned(), |cpu| format!("`{cpu}`"));
         let (count, code) = (costs.instructions(with_comma), with_comma(costs.code));
         let stack = if costs.stack == 0 { "not measured".to_owned() } else { costs.stack.to_string() };
-        let row = format!("| {name} | `{target}` | {cpu} | {count} | {code} | {stack} |");
+        let [float, integers] = costs.lookups.map(with_comma);
+        let row = format!("| {name} | `{target}` | {cpu} | {count} | {code} | {stack} | {float} | {integers} |");
         assert!(page.contains(&row), "{row}");
     }
 }

@@ -171,7 +171,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         let lead = lead.at_most(room - S::from_f64(4.0));
         let lag = lag.at_most(room - lead);
         let ticks = S::from_count(TICKS);
-        Reach { lead: lead * ticks, lag: lag * ticks, horizon: lead.as_() + 3 }
+        Reach { lead: lead * ticks, lag: lag * ticks, horizon: lead.as_().wrapping_add(3) }
     }
 
     /// At rest in `pose` until time 0, `early` periods before which the clock starts: [`MOST_EARLY`] at most, more count as so many. The
@@ -222,7 +222,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         state.length = S::from_f64(FIRST);
         state.ring.put_at_rest(pose, state.clock, 0);
         state.setpoints.fill(S::zero());
-        for periods in 0..=self.reach::<N>().horizon + 1 {
+        for periods in 0..=self.reach::<N>().horizon.wrapping_add(1) {
             let time = self.time(state, periods);
             state.setpoints.set(periods.cast_signed(), command(time));
         }
@@ -253,7 +253,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
             tolerance = self.attempt(state);
         }
         let horizon = self.reach::<N>().horizon.cast_signed();
-        state.setpoints.set(horizon + 1, state.setpoints.at(horizon));
+        state.setpoints.set(horizon.wrapping_add(1), state.setpoints.at(horizon));
 
         let ticks = state.ring.head().wrapping_sub(state.clock).cast_signed();
         let lead = signed::<S>(ticks.cast_unsigned()) * self.tick;

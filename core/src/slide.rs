@@ -61,7 +61,8 @@ pub fn box_inertia<S: Scalar>(mass: S, [x, y, z]: [S; 3]) -> Vector3<S> {
 pub type Pins<S, E, F, G> = Alike<Contact<Impact<S, E>, F>, PinOfFrame<S>, G, PINS, 3>;
 
 /// A slide with its normal law `E`, friction law `F` and drive `P`; its pins [fit](Fit) somehow, or all with clearance.
-pub type Slide<S, E, F, G = [S; 4], P = Drive<S>> = System<Floating<S>, (Pins<S, E, F, G>, Element<Pull<S>, Pusher<P>, 2>)>;
+pub type Slide<S, E, F, G = [S; 4], P = Drive<S>> =
+    System<Floating<S>, (Pins<S, E, F, G>, Element<Pull<S>, Pusher<P>, 2>)>;
 
 /// The internal variables of friction, `M` for a contact, on a slide.
 pub type Internal<M> = ([[M; 2]; PINS], ());

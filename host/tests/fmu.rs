@@ -73,6 +73,29 @@ fn slide_rows(folder: &Path, settings: &[&str], set: &Value, first: &Value) -> V
     })
 }
 
+/// A command of 20,000 periods, arcs of parabolas there and back, and what the kernel of level `n` makes of it.
+fn told(n: f32) -> Value {
+    use slipfit::{firmware::kernel_source::scene_data, scene::CD_ROM_SLIDE, setup::Scene};
+    use slipfit_core::{drive::Commandable as _, integrator::ImplicitEuler, kernel::Kernel, pose::Pose};
+    let scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).unwrap();
+    let slide = slipfit_problems::cd_rom::from_data(&scene_data(&scene).at(n).unwrap());
+    let mut kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(slide, 1e-3).unwrap();
+    let mut state = kernel.at_rest(Pose::nominal());
+    let (mut speeds, mut rows) = (Vec::new(), Vec::new());
+    for period in 0..20_000 {
+        let x = 2.0 * (period % 800) as f32 / 800.0;
+        let (sign, x) = if x < 1.0 { (0.08, x) } else { (-0.08, x - 1.0) };
+        let speed = sign * 4.0 * x * (1.0 - x);
+        kernel.mechanism_mut().drive_mut().set_command(speed);
+        let _ = kernel.step(&mut state);
+        let (velocity, place) = (state.motion.velocity, state.motion.pose.displacement_w);
+        let force = kernel.mechanism().drive().force(kernel.time(state.steps), velocity.z);
+        speeds.push(f64::from(speed));
+        rows.push([velocity.z, force, place.x, place.y, place.z].map(f64::from));
+    }
+    json!({ "name": "command", "speeds": speeds, "rows": rows })
+}
+
 #[test]
 #[ignore = "builds what users build: `cargo verify --all`"]
 fn a_slide_has_the_controllers_bits() {
@@ -94,7 +117,9 @@ fn a_slide_has_the_controllers_bits() {
     assert!(description.contains("fixedInternalStepSize=\"0.001\""));
     let tight = ["--n", "2.5"];
     let first = json!({ "distance.left back left": 6.4e-6 - 2.5 * 4.04e-5, "distance.right front wall": 5.778e-4 - 2.5 * 5.79e-5 });
-    check(&unit, &slide_rows(folder.path(), &tight, &json!({ "n": 2.5 }), &first));
+    let mut expected = slide_rows(folder.path(), &tight, &json!({ "n": 2.5 }), &first);
+    expected["told"] = told(2.5);
+    check(&unit, &expected);
     // What a scene may say the importer may say too. A force at the centre of mass is as much more gravity.
     let scene = [
         "--set=friction.coefficient=0.2",

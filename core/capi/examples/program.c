@@ -198,6 +198,12 @@ static void refuse(void) {
 }
 
 int main(void) {
+    if (slipfit_check_header(SLIPFIT_VERSION, SLIPFIT_LAYOUT) != SLIPFIT_OK ||
+        slipfit_check_header(SLIPFIT_VERSION + 1u, SLIPFIT_LAYOUT) != SLIPFIT_HEADER ||
+        slipfit_check_header(SLIPFIT_VERSION, SLIPFIT_LAYOUT + 31u) != SLIPFIT_HEADER) {
+        put("the header is not the library's\n");
+        return 1;
+    }
     predict();
     predict_ahead();
     follow_command();

@@ -194,6 +194,23 @@ typedef struct slipfit_lookup {
   uint32_t mixed;
 } slipfit_lookup;
 
+// Memory of a table at one level, for lookups in integers; opaque. The table itself stays where it is.
+typedef struct slipfit_integers {
+  uint64_t words[16];
+} slipfit_integers;
+
+// What a table says about one point, in its own integers.
+typedef struct slipfit_integer_lookup {
+  // Force, in the units of the table's forces.
+  int32_t force;
+  // Velocity, in the units of its velocities.
+  int32_t velocity;
+  // 1 if the point or the level lay outside the grid, 0 if not.
+  uint32_t clamped;
+  // 1 if the level lies between motions whose verdicts differ, 0 if not.
+  uint32_t mixed;
+} slipfit_integer_lookup;
+
 // Two slots of flash, of which each can be erased on its own.
 typedef struct slipfit_slots {
   // The first slot; null if it cannot be read: flash with an error-correcting code faults where a word was cut off. Such a
@@ -229,6 +246,11 @@ typedef struct slipfit_record {
 typedef struct slipfit_scrubber {
   uint64_t words[8];
 } slipfit_scrubber;
+
+// Memory of a watch by a production and of its stroke; opaque. The table itself stays where it is.
+typedef struct slipfit_watch {
+  uint64_t words[96];
+} slipfit_watch;
 
 // Where free ends, and when a jam is one.
 typedef struct slipfit_limits {
@@ -306,11 +328,6 @@ typedef struct slipfit_bank {
 typedef struct slipfit_jam_watch {
   uint64_t words[8];
 } slipfit_jam_watch;
-
-// Memory of a watch by a production and of its stroke; opaque. The table itself stays where it is.
-typedef struct slipfit_watch {
-  uint64_t words[96];
-} slipfit_watch;
 
 // Memory of what is known of a unit; opaque.
 typedef struct slipfit_unit {
@@ -405,6 +422,9 @@ typedef struct slipfit_wear {
 // The motion is already predicted for that instant, by another command.
 #define SLIPFIT_LATE 10
 
+// The header that the program was compiled with is not the library's.
+#define SLIPFIT_HEADER 11
+
 // The region ends before the table does.
 #define SLIPFIT_TABLE_TRUNCATED 16
 
@@ -435,6 +455,9 @@ typedef struct slipfit_wear {
 // The slot has no room for the record behind its table, or does not end between programming words.
 #define SLIPFIT_TABLE_SLOT 25
 
+// The table's values are f32, where integers are asked for.
+#define SLIPFIT_TABLE_ENCODING 26
+
 // The table has more levels than a bank.
 #define SLIPFIT_BANK_LEVELS 32
 
@@ -460,6 +483,36 @@ typedef struct slipfit_wear {
 // Too few strokes to say.
 #define SLIPFIT_UNIT_STROKES 43
 
+// What the sizes of the structs come to: the second argument of slipfit_check_header.
+#define SLIPFIT_LAYOUT ((((((((((((((((((((((((((((0u * 31u + (uint32_t)sizeof(slipfit_ahead))\
+ * 31u + (uint32_t)sizeof(slipfit_ahead_limits))\
+ * 31u + (uint32_t)sizeof(slipfit_ahead_prediction))\
+ * 31u + (uint32_t)sizeof(slipfit_bank))\
+ * 31u + (uint32_t)sizeof(slipfit_estimate))\
+ * 31u + (uint32_t)sizeof(slipfit_integer_lookup))\
+ * 31u + (uint32_t)sizeof(slipfit_integers))\
+ * 31u + (uint32_t)sizeof(slipfit_jam_watch))\
+ * 31u + (uint32_t)sizeof(slipfit_limits))\
+ * 31u + (uint32_t)sizeof(slipfit_lookup))\
+ * 31u + (uint32_t)sizeof(slipfit_monitor))\
+ * 31u + (uint32_t)sizeof(slipfit_prediction))\
+ * 31u + (uint32_t)sizeof(slipfit_predictor))\
+ * 31u + (uint32_t)sizeof(slipfit_production_report))\
+ * 31u + (uint32_t)sizeof(slipfit_production_sample))\
+ * 31u + (uint32_t)sizeof(slipfit_record))\
+ * 31u + (uint32_t)sizeof(slipfit_report))\
+ * 31u + (uint32_t)sizeof(slipfit_sample))\
+ * 31u + (uint32_t)sizeof(slipfit_scene))\
+ * 31u + (uint32_t)sizeof(slipfit_scrubber))\
+ * 31u + (uint32_t)sizeof(slipfit_slots))\
+ * 31u + (uint32_t)sizeof(slipfit_spare))\
+ * 31u + (uint32_t)sizeof(slipfit_stroke_end))\
+ * 31u + (uint32_t)sizeof(slipfit_table))\
+ * 31u + (uint32_t)sizeof(slipfit_table3))\
+ * 31u + (uint32_t)sizeof(slipfit_unit))\
+ * 31u + (uint32_t)sizeof(slipfit_watch))\
+ * 31u + (uint32_t)sizeof(slipfit_wear))
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -469,6 +522,11 @@ uint32_t slipfit_version(void);
 
 // What a status is called, such as `SLIPFIT_OK`; `unknown` for what no function returns. Ends with a zero, and stays.
 const char *slipfit_status_name(slipfit_status status);
+
+// Call it once, as slipfit_check_header(SLIPFIT_VERSION, SLIPFIT_LAYOUT): SLIPFIT_HEADER if the program was compiled with a header of
+// another version, or with structs of other sizes, than the library that is linked.
+slipfit_status slipfit_check_header(uint32_t version,
+                                    uint32_t layout);
 
 // Makes a predictor in `*predictor` for a unit of tolerance level `n` (-20 to 20) of `*scene`, at rest at time 0. It is tried over
 // its first 50 steps, which takes as long as 150: SLIPFIT_STEP if half the step would change the drive's force by more than a
@@ -631,6 +689,32 @@ slipfit_status slipfit_table3_look_up(const struct slipfit_table3 *storage,
                                       float speed,
                                       struct slipfit_lookup *lookup);
 
+// Makes a table of i16 at the tolerance level `n` in `*storage`, for counts of `unit` along its second axis (s or m): 0.001 for
+// milliseconds. It must be no greater than the distance of two nodes. Only this call uses floating point. SLIPFIT_TABLE_ENCODING if the
+// table's values are f32: `slipfit table --max-error` makes one of i16.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; the table has been written before, and its bytes stay as
+// they are for as long as this is used; nobody else uses `*storage` meanwhile.
+slipfit_status slipfit_integers_init(struct slipfit_integers *storage,
+                                     const struct slipfit_table *table,
+                                     float n,
+                                     float unit);
+
+// Writes to `*force` (N) and `*velocity` (m/s) what an integer of 1 stands for.
+//
+// # Safety
+// As for slipfit_integers_look_up.
+slipfit_status slipfit_integers_scales(const struct slipfit_integers *storage, float *force, float *velocity);
+
+// Force and velocity `at` so many counts of the unit. SLIPFIT_TABLE_VALUE as for slipfit_table_look_up.
+//
+// # Safety
+// As for slipfit_integers_init; the memory has been written before; nobody else uses `*lookup` meanwhile.
+slipfit_status slipfit_integers_look_up(const struct slipfit_integers *storage,
+                                        int32_t at,
+                                        struct slipfit_integer_lookup *lookup);
+
 // Opens the newer valid table, as slipfit_table_open has it, of two slots, and says where the next update goes: erase that
 // slot, write the table to its start, open it there, then write what slipfit_record_make gives to its end. A power cut at any
 // moment of it leaves a valid table.
@@ -664,6 +748,12 @@ slipfit_status slipfit_scrubber_init(struct slipfit_scrubber *storage,
 // # Safety
 // As for slipfit_scrubber_init.
 slipfit_status slipfit_scrubber_init3(struct slipfit_scrubber *storage, const struct slipfit_table3 *table);
+
+// As slipfit_scrubber_init, of the table of a production that a watch was made by.
+//
+// # Safety
+// As for slipfit_scrubber_init.
+slipfit_status slipfit_scrubber_init_watch(struct slipfit_scrubber *storage, const struct slipfit_watch *watch);
 
 // Looks at the next bytes of the table, `most` at most but at least one, and sets `*rounds` one up at the end of a round,
 // whatever was found in it. SLIPFIT_TABLE_CHECKSUM at the end of a round in which a byte differed; call it again and again.

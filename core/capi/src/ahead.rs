@@ -218,11 +218,7 @@ pub unsafe extern "C" fn slipfit_ahead_horizon(storage: *const slipfit_ahead, pe
 /// # Safety
 /// As for slipfit_ahead_step.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn slipfit_ahead_plan(
-    storage: *mut slipfit_ahead,
-    periods: u32,
-    speed: f32,
-) -> slipfit_status {
+pub unsafe extern "C" fn slipfit_ahead_plan(storage: *mut slipfit_ahead, periods: u32, speed: f32) -> slipfit_status {
     status(|| {
         // SAFETY: the caller's promise.
         let Predicted { ahead, state, is_told, .. } = unsafe { object_mut(storage)? };
@@ -284,18 +280,9 @@ pub unsafe extern "C" fn slipfit_ahead_read(
     status(|| unsafe {
         output(prediction, || {
             let said = object(storage)?.said;
-            let Prediction { time, speed: velocity, position, force, deviation, lead, tolerance, excess, forced } = said;
-            Ok(slipfit_ahead_prediction {
-                time,
-                force,
-                velocity,
-                position,
-                deviation,
-                lead,
-                tolerance,
-                excess,
-                forced,
-            })
+            let Prediction { time, speed: velocity, position, force, deviation, lead, tolerance, excess, forced } =
+                said;
+            Ok(slipfit_ahead_prediction { time, force, velocity, position, deviation, lead, tolerance, excess, forced })
         })?;
         object(storage)?.is_current()
     })

@@ -19,7 +19,9 @@ pub extern "C" fn slipfit_panic(divisor: u32) -> u32 {
 
 mod ahead;
 mod border;
+mod integers;
 mod jam_watch;
+mod layout;
 mod monitor;
 mod predictor;
 mod production;
@@ -30,7 +32,9 @@ mod status;
 mod table;
 
 pub use ahead::*;
+pub use integers::*;
 pub use jam_watch::*;
+pub use layout::*;
 pub use monitor::*;
 pub use predictor::*;
 pub use production::*;

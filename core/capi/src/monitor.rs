@@ -206,7 +206,7 @@ pub unsafe extern "C" fn slipfit_monitor_init(
     status(|| unsafe {
         make(storage, || {
             let limits = (*input(limits)?).into();
-            Ok(Watching { monitor: Monitor::new(object(table)?.table, n, limits)?, watch: Watch::default() })
+            Ok(Watching { monitor: Monitor::new(*object(table)?, n, limits)?, watch: Watch::default() })
         })
     })
 }
@@ -278,7 +278,7 @@ pub unsafe extern "C" fn slipfit_monitor_restart(storage: *mut slipfit_monitor) 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn slipfit_bank_init(storage: *mut slipfit_bank, table: *const slipfit_table) -> slipfit_status {
     // SAFETY: the caller's promise.
-    status(|| unsafe { make(storage, || Ok(LevelBank::new(object(table)?.table)?)) })
+    status(|| unsafe { make(storage, || Ok(LevelBank::new(*object(table)?)?)) })
 }
 
 /// Adds the force (N) measured at the time `t` (s) of a motion.

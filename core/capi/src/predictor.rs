@@ -169,10 +169,7 @@ pub unsafe extern "C" fn slipfit_predictor_step(storage: *mut slipfit_predictor)
 /// # Safety
 /// As for slipfit_predictor_step.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn slipfit_predictor_set_command(
-    storage: *mut slipfit_predictor,
-    speed: f32,
-) -> slipfit_status {
+pub unsafe extern "C" fn slipfit_predictor_set_command(storage: *mut slipfit_predictor, speed: f32) -> slipfit_status {
     status(|| {
         // SAFETY: the caller's promise.
         let predictor = unsafe { object_mut(storage)? };

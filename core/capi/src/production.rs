@@ -99,7 +99,7 @@ pub struct slipfit_unit {
 
 #[derive(Clone, Copy)]
 pub(crate) struct Watching {
-    watch: Watch<'static, AnyNodes<'static>>,
+    pub(crate) watch: Watch<'static, AnyNodes<'static>>,
     stroke: Stroke,
 }
 

@@ -1,11 +1,12 @@
 //! The cyclic check of a table in use: an object of its own, so that the table itself is only ever read.
 
-use slipfit_core::table::Scrubber;
+use slipfit_core::table::{Scrubber, Table};
 
 use crate::{
     border::{Storage, input, make, object, object_mut},
+    production::slipfit_watch,
     status::{Refusal, SLIPFIT_TABLE_CHECKSUM, slipfit_status, status},
-    table::{Opened, slipfit_table, slipfit_table3},
+    table::{slipfit_table, slipfit_table3},
 };
 
 /// Memory of a cyclic check; opaque.
@@ -26,8 +27,8 @@ unsafe impl Storage for slipfit_scrubber {
     const MARK: u32 = 0x534c_4331;
 }
 
-fn scrubbing<const N: usize>(opened: &Opened<N>) -> Scrubbing {
-    Scrubbing { scrubber: Scrubber::new(&opened.table), region: opened.region }
+fn scrubbing<const N: usize>(table: &Table<'static, N>) -> Scrubbing {
+    Scrubbing { scrubber: Scrubber::new(table), region: table.bytes() }
 }
 
 /// Makes a cyclic check of an open table in `*storage`. The table is only read, at any time and by anybody.
@@ -55,6 +56,19 @@ pub unsafe extern "C" fn slipfit_scrubber_init3(
 ) -> slipfit_status {
     // SAFETY: the caller's promise.
     status(|| unsafe { make(storage, || Ok(scrubbing(object(table)?))) })
+}
+
+/// As slipfit_scrubber_init, of the table of a production that a watch was made by.
+///
+/// # Safety
+/// As for slipfit_scrubber_init.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slipfit_scrubber_init_watch(
+    storage: *mut slipfit_scrubber,
+    watch: *const slipfit_watch,
+) -> slipfit_status {
+    // SAFETY: the caller's promise.
+    status(|| unsafe { make(storage, || Ok(scrubbing(object(watch)?.watch.production().table()))) })
 }
 
 /// Looks at the next bytes of the table, `most` at most but at least one, and sets `*rounds` one up at the end of a round,

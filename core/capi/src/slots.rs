@@ -5,7 +5,7 @@ use slipfit_core::table::{Slots, WORD_MOST, Word};
 use crate::{
     border::{bytes, input, make, output},
     status::{Refusal, SLIPFIT_NULL, SLIPFIT_PARAMETER, slipfit_status, status},
-    table::{Opened, axes, slipfit_table},
+    table::{axes, slipfit_table},
 };
 
 /// The greatest programming word (bytes).
@@ -86,7 +86,7 @@ pub unsafe extern "C" fn slipfit_slots_open(
                 let ([first, second], table) = (regions, *slots.newest()?);
                 // The newest table is never in the spare slot.
                 let region = if slot == 0 { second } else { first }.unwrap_or_default();
-                opened = Some(Opened { table, region });
+                opened = Some(table);
                 Ok(slipfit_spare { slot: slot as u32, sequence, room: word.room(region.len()) as u32 })
             })?;
             opened.ok_or(Refusal(SLIPFIT_NULL))

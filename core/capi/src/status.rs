@@ -29,6 +29,8 @@ pub const SLIPFIT_STEP: slipfit_status = 8;
 pub const SLIPFIT_BEHIND: slipfit_status = 9;
 /// The motion is already predicted for that instant, by another command.
 pub const SLIPFIT_LATE: slipfit_status = 10;
+/// The header that the program was compiled with is not the library's.
+pub const SLIPFIT_HEADER: slipfit_status = 11;
 /// The region ends before the table does.
 pub const SLIPFIT_TABLE_TRUNCATED: slipfit_status = 16;
 /// No table starts there.
@@ -49,6 +51,8 @@ pub const SLIPFIT_TABLE_SCENE: slipfit_status = 23;
 pub const SLIPFIT_TABLE_KIND: slipfit_status = 24;
 /// The slot has no room for the record behind its table, or does not end between programming words.
 pub const SLIPFIT_TABLE_SLOT: slipfit_status = 25;
+/// The table's values are f32, where integers are asked for.
+pub const SLIPFIT_TABLE_ENCODING: slipfit_status = 26;
 /// The table has more levels than a bank.
 pub const SLIPFIT_BANK_LEVELS: slipfit_status = 32;
 /// Too few samples for an estimate.
@@ -91,6 +95,7 @@ pub extern "C" fn slipfit_status_name(status: slipfit_status) -> *const c_char {
         SLIPFIT_STEP => c"SLIPFIT_STEP",
         SLIPFIT_BEHIND => c"SLIPFIT_BEHIND",
         SLIPFIT_LATE => c"SLIPFIT_LATE",
+        SLIPFIT_HEADER => c"SLIPFIT_HEADER",
         SLIPFIT_TABLE_TRUNCATED => c"SLIPFIT_TABLE_TRUNCATED",
         SLIPFIT_TABLE_MAGIC => c"SLIPFIT_TABLE_MAGIC",
         SLIPFIT_TABLE_VERSION => c"SLIPFIT_TABLE_VERSION",
@@ -101,6 +106,7 @@ pub extern "C" fn slipfit_status_name(status: slipfit_status) -> *const c_char {
         SLIPFIT_TABLE_SCENE => c"SLIPFIT_TABLE_SCENE",
         SLIPFIT_TABLE_KIND => c"SLIPFIT_TABLE_KIND",
         SLIPFIT_TABLE_SLOT => c"SLIPFIT_TABLE_SLOT",
+        SLIPFIT_TABLE_ENCODING => c"SLIPFIT_TABLE_ENCODING",
         SLIPFIT_BANK_LEVELS => c"SLIPFIT_BANK_LEVELS",
         SLIPFIT_BANK_SAMPLES => c"SLIPFIT_BANK_SAMPLES",
         SLIPFIT_MONITOR_BAND => c"SLIPFIT_MONITOR_BAND",

@@ -41,21 +41,15 @@ pub struct slipfit_lookup {
     pub mixed: u32,
 }
 
-pub(crate) struct Opened<const N: usize> {
-    pub(crate) table: Table<'static, N>,
-    /// Where it lies.
-    pub(crate) region: &'static [u8],
-}
-
 // SAFETY: plain words.
 unsafe impl Storage for slipfit_table {
-    type Object = Opened<2>;
+    type Object = Table<'static, 2>;
     const MARK: u32 = 0x534c_5431;
 }
 
 // SAFETY: plain words.
 unsafe impl Storage for slipfit_table3 {
-    type Object = Opened<3>;
+    type Object = Table<'static, 3>;
     const MARK: u32 = 0x534c_5433;
 }
 
@@ -63,7 +57,7 @@ unsafe impl Storage for slipfit_table3 {
 ///
 /// # Safety
 /// As for slipfit_table_look_up.
-unsafe fn look_up<S: Storage<Object = Opened<N>>, const N: usize>(
+unsafe fn look_up<S: Storage<Object = Table<'static, N>>, const N: usize>(
     storage: *const S,
     at: [f32; N],
     lookup: *mut slipfit_lookup,
@@ -72,7 +66,7 @@ unsafe fn look_up<S: Storage<Object = Opened<N>>, const N: usize>(
     // SAFETY: the caller's promise.
     unsafe {
         output(lookup, || {
-            let Lookup { force, velocity, clamped, mixed, damaged } = object(storage)?.table.lookup(at);
+            let Lookup { force, velocity, clamped, mixed, damaged } = object(storage)?.lookup(at);
             is_damaged = damaged;
             Ok(slipfit_lookup { force, velocity, clamped: clamped.into(), mixed: mixed.into() })
         })?;
@@ -105,10 +99,7 @@ pub unsafe extern "C" fn slipfit_table_open(
 ) -> slipfit_status {
     // SAFETY: the caller's promise.
     status(|| unsafe {
-        make(storage, || {
-            let region = bytes(region, length)?;
-            Ok(Opened { table: Table::open(region)?.expect_axes(axes(over)?)?.expect_scene(scene_hash)?, region })
-        })
+        make(storage, || Ok(Table::open(bytes(region, length)?)?.expect_axes(axes(over)?)?.expect_scene(scene_hash)?))
     })
 }
 
@@ -126,9 +117,8 @@ pub unsafe extern "C" fn slipfit_table3_open(
     // SAFETY: the caller's promise.
     status(|| unsafe {
         make(storage, || {
-            let region = bytes(region, length)?;
             let axes = [AxisKind::Level, AxisKind::Position, AxisKind::Velocity];
-            Ok(Opened { table: Table::open(region)?.expect_axes(axes)?.expect_scene(scene_hash)?, region })
+            Ok(Table::open(bytes(region, length)?)?.expect_axes(axes)?.expect_scene(scene_hash)?)
         })
     })
 }

@@ -27,7 +27,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         speed: S,
     ) -> bool {
         let horizon = self.reach::<N>().horizon;
-        let at = periods.min(horizon).cast_signed() + 1;
+        let at = periods.min(horizon).wrapping_add(1).cast_signed();
         // Beyond the horizon nothing is known but that the mechanism is at rest until it is released.
         let known = whole(state.ring.head().wrapping_sub(state.clock).cast_signed()).min(horizon.cast_signed());
         let is_open = periods <= horizon && at > known;
@@ -44,7 +44,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         mut command: impl FnMut(S) -> S,
     ) {
         for periods in 0..=self.reach::<N>().horizon {
-            let speed = command(self.time(state, periods + 1));
+            let speed = command(self.time(state, periods.wrapping_add(1)));
             self.plan(state, periods, speed);
         }
     }
@@ -64,7 +64,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         let parabola = state.told.tell(speed, deviation, horizon);
         let kept = horizon * (one - state.is_open);
         for periods in 0..=self.reach::<N>().horizon {
-            let (after, at) = (S::from_count(periods), periods.cast_signed() + 1);
+            let (after, at) = (S::from_count(periods), periods.wrapping_add(1).cast_signed());
             state.setpoints.set(at, kept.select_gt(after, state.setpoints.at(at), parabola.after(after)));
         }
     }

@@ -42,12 +42,13 @@ impl<S: Scalar> Told<S> {
     #[inline(always)]
     pub fn tell(&mut self, speed: S, deviation: S, horizon: S) -> Parabola<S> {
         let (zero, is_past) = (S::zero(), self.is_past);
-        self.speeds.copy_within(..2 * SPAN, 1);
-        self.speeds = self.speeds.map(|old| is_past.select_gt(zero, speed, old));
-        self.speeds[0] = speed;
+        let mut newer = speed;
+        for told in &mut self.speeds {
+            newer = core::mem::replace(told, is_past.select_gt(zero, speed, newer));
+        }
         self.is_past = zero;
         self.strayed += deviation;
-        let [newest, middle, oldest] = [0, SPAN, 2 * SPAN].map(|i| self.speeds[i]);
+        let (newest, middle, oldest) = (self.speeds[0], self.speeds[SPAN], self.speeds[2 * SPAN]);
         let first = newest - middle;
         let second = (first - (middle - oldest)) * S::from_f64(0.5);
         Parabola { newest: newest + self.strayed / (horizon * S::from_f64(4.0)), first, second }

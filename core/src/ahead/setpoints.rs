@@ -22,9 +22,6 @@ fn offset(periods: i32) -> u32 {
 }
 
 impl<S: Scalar, const N: usize> Setpoints<S, N> {
-    /// As many as there are.
-    pub const COUNT: u32 = 2 * N as u32;
-
     /// All at rest.
     pub fn new() -> Self {
         Self { speeds: [[S::zero(); 2]; N], now: 0 }
@@ -38,8 +35,9 @@ impl<S: Scalar, const N: usize> Setpoints<S, N> {
 
     #[inline(always)]
     fn place(&self, periods: i32) -> (usize, usize) {
-        let place = (self.now.wrapping_add(offset(periods)) & (Self::COUNT - 1)) as usize;
-        (place / 2, place & 1)
+        let place = self.now.wrapping_add(offset(periods)) as usize;
+
+        ((place / 2) & (N - 1), place & 1)
     }
 
     /// The setpoint so many `periods` after the present instant, or before where negative.
@@ -69,11 +67,11 @@ impl<S: Scalar, const N: usize> Setpoints<S, N> {
         let first = whole(lead);
         let period = S::one() / rate;
         let into = S::from_count(lead.cast_unsigned() & (TICKS - 1)) / S::from_count(TICKS);
-        let mut last = [-1, 0, 1].map(|k| self.at(first + k));
+        let mut last = [-1, 0, 1].map(|k| self.at(first.wrapping_add(k)));
         core::array::from_fn(|piece| {
             let piece = piece as u32;
             let [before, from, to] = last;
-            let after = self.at(first + piece.cast_signed() + 2);
+            let after = self.at(first.wrapping_add(piece.wrapping_add(2).cast_signed()));
             last = [from, to, after];
             between([before, from, to, after], (S::from_count(piece) - into) * period, rate)
         })

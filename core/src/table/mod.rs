@@ -56,6 +56,7 @@ mod error;
 #[cfg(test)]
 pub(crate) mod example;
 mod header;
+mod integers;
 pub mod layout;
 mod nodes;
 mod scrubber;
@@ -73,6 +74,7 @@ pub(crate) use axis::Place;
 pub use codes::{AxisKind, Encoding};
 pub use error::TableError;
 pub use header::{ChannelRecord, Header};
+pub use integers::{IntegerLookup, Integers};
 use nodes::Range;
 pub use nodes::{AnyNodes, ChannelKind, F32Nodes, I16Nodes, Nodes, Values};
 pub use scrubber::Scrubber;
@@ -287,6 +289,13 @@ impl<const N: usize, V: Nodes> Table<'_, N, V> {
     /// Length of the table (bytes); the region may be longer.
     pub fn length(&self) -> usize {
         self.bytes.len()
+    }
+}
+
+impl<'a, const N: usize, V> Table<'a, N, V> {
+    /// The table alone, from the magic to the checksum.
+    pub fn bytes(&self) -> &'a [u8] {
+        self.bytes
     }
 }
 

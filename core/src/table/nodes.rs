@@ -55,6 +55,12 @@ impl Range {
         if value <= self.high { value } else { self.high }
     }
 
+    /// The integers that are multiplied with `scale` within it: every one that a node has.
+    fn of_integers(&self, scale: f32) -> [i32; 2] {
+        // Half a unit, so that no rounding loses the ends.
+        [libm::floorf(self.low / scale + 0.5) as i32, libm::ceilf(self.high / scale - 0.5) as i32]
+    }
+
     /// Whether `value` is within it.
     #[inline(always)]
     pub fn contains(&self, value: f32) -> bool {
@@ -198,6 +204,24 @@ impl Nodes for I16Nodes<'_> {
     #[inline(always)]
     fn between(&self, first: usize, fraction: f32) -> Values {
         self.scaled(pair(self.nodes, first).map(|pair| Self::blend(pair, fraction)).unwrap_or_default())
+    }
+}
+
+impl<'a> I16Nodes<'a> {
+    /// The nodes, what integers are multiplied with, and the integers of the `ranges`.
+    pub(super) fn parts(&self, ranges: &[Range; CHANNELS]) -> (&'a [[u8; 4]], [f32; CHANNELS], [[i32; 2]; CHANNELS]) {
+        let mut ends = [[0; 2]; CHANNELS];
+        for ((ends, range), scale) in ends.iter_mut().zip(ranges).zip(self.scales) {
+            *ends = range.of_integers(scale);
+        }
+        (self.nodes, self.scales, ends)
+    }
+
+    /// The integer of a node's force, `channel` 0, or velocity.
+    #[inline(always)]
+    pub(super) fn integer(node: &[u8; 4], channel: usize) -> i32 {
+        let [a, b, c, d] = *node;
+        i16::from_le_bytes(if channel == 0 { [a, b] } else { [c, d] }).into()
     }
 }
 

@@ -1,4 +1,4 @@
-//! Prints what a step of the shipped slide takes on this core, and the fingerprint of what it computes.
+//! Prints what a step of the shipped slide takes on this core, the fingerprint of what it computes, and what a lookup takes.
 #![no_std]
 #![no_main]
 
@@ -6,13 +6,14 @@
 mod riscv;
 
 use slipfit_firmware::{
+    lookups::Lookups,
     machine::{Machine, print},
     slide::Steps,
 };
 
 fn run(machine: &mut impl Machine) {
-    let steps = Steps::on(machine);
-    print(machine, format_args!("{steps}"));
+    let (steps, lookups) = (Steps::on(machine), Lookups::on(machine));
+    print(machine, format_args!("{steps} {lookups}"));
 }
 
 #[cfg(target_arch = "arm")]

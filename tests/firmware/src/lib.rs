@@ -3,6 +3,7 @@
 
 pub mod count;
 pub mod fingerprint;
+pub mod lookups;
 pub mod machine;
 pub mod slide;
 

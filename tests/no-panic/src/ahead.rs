@@ -21,7 +21,7 @@ mod uses {
         law::{Impact, Regularised, ThreeHalves},
         pose::Pose,
         production::{self, Production, SAVED_SIZE, Unit},
-        table::{AxisKind, TableError},
+        table::{AxisKind, Table, TableError},
     };
     use slipfit_problems::{cd_rom, mechanisms::ball_rod};
 
@@ -31,12 +31,22 @@ mod uses {
         let _ = black_box(on_joints());
         static REGION: [u8; 256] = [0; 256];
         let _ = black_box(production(black_box(&REGION)));
+        let _ = black_box(in_integers(black_box(&REGION)));
     }
 
     /// Makes and steps the shipped mechanism in space that has ideal joints.
     fn on_joints() -> Result<(), ParameterError<f32>> {
         let (kernel, mut state) = black_box(ball_rod::predictor(black_box(0.0))?);
         let _ = black_box(kernel.step(&mut state));
+        Ok(())
+    }
+
+    /// Looks up in integers.
+    fn in_integers(region: &[u8]) -> Result<(), TableError> {
+        let table = Table::<2>::open(region)?.i16().ok_or(TableError::Magic)?;
+        if let Ok(integers) = table.integers(black_box(0.0), black_box(1e-3)) {
+            black_box((integers.lookup(black_box(7)), integers.scales()));
+        }
         Ok(())
     }
 

@@ -41,7 +41,8 @@ pub fn ahead_stays_finite(scene: &slipfit_scene, n: f32, limits: &slipfit_ahead_
 }
 
 /// What prediction ahead of the clock is held to here.
-pub const LIMITS: slipfit_ahead_limits = slipfit_ahead_limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 1 };
+pub const LIMITS: slipfit_ahead_limits =
+    slipfit_ahead_limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 1 };
 
 #[test]
 fn special_numbers_ahead_of_the_clock() {

@@ -4,6 +4,7 @@
 mod ahead;
 #[path = "../common/mod.rs"]
 mod common;
+mod integers;
 mod jam_watch;
 mod monitor;
 mod pointers;

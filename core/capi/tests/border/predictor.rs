@@ -107,8 +107,7 @@ fn command(period: u32) -> f32 {
 #[cfg(not(feature = "exact"))]
 fn a_command_that_is_set_is_the_kernels() {
     use slipfit_core::{drive::Commandable, integrator::ImplicitEuler, kernel::Kernel, pose::Pose};
-    let mut kernel =
-        Kernel::<f32, _, ImplicitEuler<4>>::new(super::ahead::slide(&scene(), 2.5), scene().step).unwrap();
+    let mut kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(super::ahead::slide(&scene(), 2.5), scene().step).unwrap();
     let (mut c, mut said) = (zeroed::<slipfit_predictor>(), zeroed::<slipfit_prediction>());
     // SAFETY: every pointer is to a local of its type.
     unsafe {

@@ -121,3 +121,23 @@ fn a_unit_is_taught_watched_saved_and_loaded_as_in_rust() {
         assert_eq!(slipfit_watch_wear(&watch, &unit, ptr::null_mut()), SLIPFIT_NULL);
     }
 }
+
+/// The table of a watch is checked while the watch is in use.
+#[test]
+fn the_table_of_a_watch_is_scrubbed() {
+    let mut bytes = production();
+    let (pointer, length) = (bytes.as_mut_ptr(), bytes.len() as u32);
+    let (mut watch, mut scrubber, mut rounds) = (zeroed::<slipfit_watch>(), zeroed::<slipfit_scrubber>(), 0);
+    // SAFETY: every pointer is to a local of its type, and the bytes outlive the watch; only a raw pointer changes them.
+    unsafe {
+        assert_eq!(slipfit_scrubber_init_watch(&mut scrubber, &watch), SLIPFIT_NOT_MADE);
+        assert_eq!(slipfit_watch_init(&mut watch, pointer, length, SLIPFIT_AXIS_TIME, 7, 1e-3), SLIPFIT_OK);
+        assert_eq!(slipfit_scrubber_init_watch(&mut scrubber, &watch), SLIPFIT_OK);
+        assert_eq!(slipfit_scrubber_check(&mut scrubber, u32::MAX, &mut rounds), SLIPFIT_OK);
+        if !cfg!(miri) {
+            *pointer.add(layout::HEADER_SIZE + 9) ^= 4;
+            assert_eq!(slipfit_scrubber_check(&mut scrubber, u32::MAX, &mut rounds), SLIPFIT_TABLE_CHECKSUM);
+            assert_eq!(rounds, 2);
+        }
+    }
+}

@@ -40,7 +40,7 @@ pub fn table() -> Vec<u8> {
 }
 
 /// The table with its checksum at the end.
-fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+pub fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes.extend(layout::checksum(&bytes).to_le_bytes());
     bytes
 }

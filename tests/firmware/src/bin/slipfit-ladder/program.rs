@@ -121,6 +121,9 @@ fn ahead(machine: &mut impl Machine, slide: Unit<ThreeHalves<f32>, Regularised<f
     if let Some(bytes) = machine.stack(|| _ = black_box(slide_ahead(&(), &mut run))) {
         print(machine, format_args!("stack of slide_ahead: {bytes} bytes"));
     }
+    if let Some(instructions) = counted(machine, &(), &mut run, |(), run| run.ahead.follow(&mut run.state, 0.01)) {
+        print(machine, format_args!("instructions of following a command: {instructions}"));
+    }
 }
 
 rungs! {
