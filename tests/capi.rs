@@ -1,6 +1,8 @@
 //! The C library: one C program, compiled for the host and for the emulated Cortex-M4F, prints the same bits as Rust; it
 //! links only while no panic is reachable, and its image stays small and free of double precision.
 
+#[path = "capi/abi.rs"]
+mod abi;
 #[path = "capi/panics.rs"]
 mod panics;
 

@@ -398,7 +398,7 @@ typedef struct slipfit_wear {
 // A pointer is not aligned as its type asks for.
 #define SLIPFIT_MISALIGNED 2
 
-// A length exceeds the address space.
+// A length exceeds the address space, or is not one of whole words.
 #define SLIPFIT_LENGTH 3
 
 // The object was not made, or making it failed.
@@ -763,6 +763,17 @@ slipfit_status slipfit_scrubber_init_watch(struct slipfit_scrubber *storage, con
 slipfit_status slipfit_scrubber_check(struct slipfit_scrubber *storage,
                                       uint32_t most,
                                       uint32_t *rounds);
+
+// Writes to `*seal` a number that goes by every bit of the `size` bytes at `object`, a multiple of four: that of an object of this library,
+// with its parameters and its state. Take it after the last call that changed the object, and compare it before the next use: one flipped
+// bit always changes it, more of them all but once in four billion times. Four instructions a word on a Cortex-M4.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; the object's memory has been written before, and nobody
+// writes it meanwhile.
+slipfit_status slipfit_seal(const void *object,
+                            uint32_t size,
+                            uint32_t *seal);
 
 // Limits for samples a `period` (s) apart with white noise of standard deviation `noise` (N) on the force: averages over 20
 // periods, five standard deviations of what the average leaves of the noise, jams held for ten periods, a band of half a

@@ -79,6 +79,18 @@ pub(crate) unsafe fn bytes(pointer: *const u8, length: u32) -> Result<&'static [
     Ok(unsafe { slice::from_raw_parts(pointer, length) })
 }
 
+/// The words of the `size` bytes at `pointer`, a multiple of four.
+///
+/// # Safety
+/// If the pointer is neither null nor misaligned, they must be there, written before, and nobody may write them meanwhile.
+pub(crate) unsafe fn words<'a>(pointer: *const u32, size: u32) -> Result<&'a [u32], Refusal> {
+    checked(pointer)?;
+    let length = usize::try_from(size).ok().filter(|size| isize::try_from(*size).is_ok() && size.is_multiple_of(4));
+    let length = length.ok_or(Refusal(SLIPFIT_LENGTH))? / 4;
+    // SAFETY: checked, and the caller's promise.
+    Ok(unsafe { slice::from_raw_parts(pointer, length) })
+}
+
 /// Makes an object in `storage`. Until that succeeds there is none, whatever was there before.
 ///
 /// # Safety

@@ -13,7 +13,7 @@ pub const SLIPFIT_OK: slipfit_status = 0;
 pub const SLIPFIT_NULL: slipfit_status = 1;
 /// A pointer is not aligned as its type asks for.
 pub const SLIPFIT_MISALIGNED: slipfit_status = 2;
-/// A length exceeds the address space.
+/// A length exceeds the address space, or is not one of whole words.
 pub const SLIPFIT_LENGTH: slipfit_status = 3;
 /// The object was not made, or making it failed.
 pub const SLIPFIT_NOT_MADE: slipfit_status = 4;

@@ -17,6 +17,7 @@ fn the_header_is_current() {
         "integers",
         "slots",
         "scrubber",
+        "seal",
         "monitor",
         "jam_watch",
         "production",

@@ -11,6 +11,7 @@ mod pointers;
 mod predictor;
 mod production;
 mod scrubber;
+mod seal;
 mod slots;
 mod table;
 
