@@ -11,6 +11,7 @@
 #ifndef SLIPFIT_H
 #define SLIPFIT_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 // The version of the library, 10000·major + 100·minor + patch.
@@ -484,34 +485,34 @@ typedef struct slipfit_wear {
 #define SLIPFIT_UNIT_STROKES 43
 
 // What the sizes of the structs come to: the second argument of slipfit_check_header.
-#define SLIPFIT_LAYOUT ((((((((((((((((((((((((((((0u * 31u + (uint32_t)sizeof(slipfit_ahead))\
- * 31u + (uint32_t)sizeof(slipfit_ahead_limits))\
- * 31u + (uint32_t)sizeof(slipfit_ahead_prediction))\
- * 31u + (uint32_t)sizeof(slipfit_bank))\
- * 31u + (uint32_t)sizeof(slipfit_estimate))\
- * 31u + (uint32_t)sizeof(slipfit_integer_lookup))\
- * 31u + (uint32_t)sizeof(slipfit_integers))\
- * 31u + (uint32_t)sizeof(slipfit_jam_watch))\
- * 31u + (uint32_t)sizeof(slipfit_limits))\
- * 31u + (uint32_t)sizeof(slipfit_lookup))\
- * 31u + (uint32_t)sizeof(slipfit_monitor))\
- * 31u + (uint32_t)sizeof(slipfit_prediction))\
- * 31u + (uint32_t)sizeof(slipfit_predictor))\
- * 31u + (uint32_t)sizeof(slipfit_production_report))\
- * 31u + (uint32_t)sizeof(slipfit_production_sample))\
- * 31u + (uint32_t)sizeof(slipfit_record))\
- * 31u + (uint32_t)sizeof(slipfit_report))\
- * 31u + (uint32_t)sizeof(slipfit_sample))\
- * 31u + (uint32_t)sizeof(slipfit_scene))\
- * 31u + (uint32_t)sizeof(slipfit_scrubber))\
- * 31u + (uint32_t)sizeof(slipfit_slots))\
- * 31u + (uint32_t)sizeof(slipfit_spare))\
- * 31u + (uint32_t)sizeof(slipfit_stroke_end))\
- * 31u + (uint32_t)sizeof(slipfit_table))\
- * 31u + (uint32_t)sizeof(slipfit_table3))\
- * 31u + (uint32_t)sizeof(slipfit_unit))\
- * 31u + (uint32_t)sizeof(slipfit_watch))\
- * 31u + (uint32_t)sizeof(slipfit_wear))
+#define SLIPFIT_LAYOUT ((((((((((((((((((((((((((((0u * 31u + sizeof(slipfit_ahead))\
+ * 31u + sizeof(slipfit_ahead_limits))\
+ * 31u + sizeof(slipfit_ahead_prediction))\
+ * 31u + sizeof(slipfit_bank))\
+ * 31u + sizeof(slipfit_estimate))\
+ * 31u + sizeof(slipfit_integer_lookup))\
+ * 31u + sizeof(slipfit_integers))\
+ * 31u + sizeof(slipfit_jam_watch))\
+ * 31u + sizeof(slipfit_limits))\
+ * 31u + sizeof(slipfit_lookup))\
+ * 31u + sizeof(slipfit_monitor))\
+ * 31u + sizeof(slipfit_prediction))\
+ * 31u + sizeof(slipfit_predictor))\
+ * 31u + sizeof(slipfit_production_report))\
+ * 31u + sizeof(slipfit_production_sample))\
+ * 31u + sizeof(slipfit_record))\
+ * 31u + sizeof(slipfit_report))\
+ * 31u + sizeof(slipfit_sample))\
+ * 31u + sizeof(slipfit_scene))\
+ * 31u + sizeof(slipfit_scrubber))\
+ * 31u + sizeof(slipfit_slots))\
+ * 31u + sizeof(slipfit_spare))\
+ * 31u + sizeof(slipfit_stroke_end))\
+ * 31u + sizeof(slipfit_table))\
+ * 31u + sizeof(slipfit_table3))\
+ * 31u + sizeof(slipfit_unit))\
+ * 31u + sizeof(slipfit_watch))\
+ * 31u + sizeof(slipfit_wear))
 
 #ifdef __cplusplus
 extern "C" {
@@ -526,7 +527,7 @@ const char *slipfit_status_name(slipfit_status status);
 // Call it once, as slipfit_check_header(SLIPFIT_VERSION, SLIPFIT_LAYOUT): SLIPFIT_HEADER if the program was compiled with a header of
 // another version, or with structs of other sizes, than the library that is linked.
 slipfit_status slipfit_check_header(uint32_t version,
-                                    uint32_t layout);
+                                    size_t layout);
 
 // Makes a predictor in `*predictor` for a unit of tolerance level `n` (-20 to 20) of `*scene`, at rest at time 0. It is tried over
 // its first 50 steps, which takes as long as 150: SLIPFIT_STEP if half the step would change the drive's force by more than a

@@ -17,12 +17,12 @@ use crate::{
 /// The sizes (bytes) of all structs, by their names in alphabetical order, as one number.
 macro_rules! layout {
     ($($name:ident),*) => {
-        0u32$(.wrapping_mul(31).wrapping_add(size_of::<$name>() as u32))*
+        0usize$(.wrapping_mul(31).wrapping_add(size_of::<$name>()))*
     };
 }
 
 #[rustfmt::skip]
-const LAYOUT: u32 = layout!(
+const LAYOUT: usize = layout!(
     slipfit_ahead, slipfit_ahead_limits, slipfit_ahead_prediction, slipfit_bank, slipfit_estimate, slipfit_integer_lookup,
     slipfit_integers, slipfit_jam_watch, slipfit_limits, slipfit_lookup, slipfit_monitor, slipfit_prediction,
     slipfit_predictor, slipfit_production_report, slipfit_production_sample, slipfit_record, slipfit_report, slipfit_sample,
@@ -33,6 +33,6 @@ const LAYOUT: u32 = layout!(
 /// Call it once, as slipfit_check_header(SLIPFIT_VERSION, SLIPFIT_LAYOUT): SLIPFIT_HEADER if the program was compiled with a header of
 /// another version, or with structs of other sizes, than the library that is linked.
 #[unsafe(no_mangle)]
-pub extern "C" fn slipfit_check_header(version: u32, layout: u32) -> slipfit_status {
+pub extern "C" fn slipfit_check_header(version: u32, layout: usize) -> slipfit_status {
     status(|| if version == SLIPFIT_VERSION && layout == LAYOUT { Ok(()) } else { Err(Refusal(SLIPFIT_HEADER)) })
 }

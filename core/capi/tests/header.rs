@@ -44,7 +44,7 @@ fn with_layout(header: &str) -> String {
     let names = header.split("typedef struct ").skip(1).filter_map(|text| Some(text.split_once(" {\n")?.0));
     let mut names: Vec<_> = names.collect();
     names.sort_unstable();
-    let sum = names.iter().fold("0u".to_owned(), |sum, name| format!("({sum} * 31u + (uint32_t)sizeof({name}))"));
+    let sum = names.iter().fold("0u".to_owned(), |sum, name| format!("({sum} * 31u + sizeof({name}))"));
     let defined = format!(
         "// What the sizes of the structs come to: the second argument of slipfit_check_header.\n\
          #define SLIPFIT_LAYOUT {}\n\n",
