@@ -41,3 +41,26 @@ impl From<ParameterError<f32>> for MonitorError {
         Self::Parameter(error)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::MonitorError;
+    use crate::{error::bounded, table::TableError};
+
+    #[test]
+    fn errors_say_what_is_wrong() {
+        let bounds = bounded("monitor.hold", 11.0f32, [0.0, 10.0]).unwrap_err();
+        for (error, text) in [
+            (MonitorError::Table(TableError::Magic), "no table over tolerance level and time: no table starts here"),
+            (MonitorError::from(bounds), &*bounds.to_string()),
+            (
+                MonitorError::Mixed { level: 2.5, between: [2.0, 3.0] },
+                "monitor.level is 2.5, the table has no unit between its levels 2 and 3, which end differently",
+            ),
+        ] {
+            assert_eq!(error.to_string(), text);
+        }
+    }
+}

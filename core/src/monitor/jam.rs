@@ -170,4 +170,38 @@ mod tests {
             }
         }
     }
+
+    /// At the tenth of the command it neither moves nor stands; at the limit of force it does not push too hard.
+    #[test]
+    fn limits_themselves_are_no_sign_of_a_jam() {
+        let tenth = super::STANDING * 0.1;
+        let mut watch = JamWatch::default();
+        assert_eq!(watch.step(&limits(), &at(1.0, tenth)), Verdict::Free);
+        assert_eq!(reported(watch, [at(1.0, 0.0); 100].into_iter()), None, "it never moved");
+        assert_eq!(reported(moving(), [at(1.0, tenth); 100].into_iter()), None);
+        assert_eq!(reported(moving(), [at(1.0, tenth.next_down()); 100].into_iter()), Some(9));
+        assert_eq!(reported(moving(), [at(3.0, 0.05); 100].into_iter()), None);
+        assert_eq!(reported(moving(), [at(3.0f32.next_up(), 0.05); 100].into_iter()), Some(9));
+        // Held for exactly as long as is asked for, which a power of two has without rounding.
+        let exact = Limits { hold: 0.0625, period: 0.0078125, ..limits() };
+        let mut watch = JamWatch::default();
+        let verdicts: Vec<_> = (0..10).map(|_| watch.step(&exact, &at(3.5, 0.05))).collect();
+        assert_eq!(verdicts.iter().position(|verdict| *verdict == Verdict::Jam), Some(8));
+        let mut watch = JamWatch::default();
+        let lost = Sample { speed: f32::NAN, ..at(1.0, 0.05) };
+        let verdicts: Vec<_> = (0..10).map(|_| watch.step(&exact, &lost)).collect();
+        assert_eq!(verdicts.iter().position(|verdict| *verdict == Verdict::NoData), Some(8));
+    }
+
+    /// Backwards as forwards, and the wrong way is no motion.
+    #[test]
+    fn speed_counts_along_the_command() {
+        let backwards = |force, speed| Sample { command: -0.1, ..at(force, speed) };
+        let mut watch = JamWatch::default();
+        assert_eq!(watch.step(&limits(), &backwards(-1.0, -0.05)), Verdict::Free);
+        assert_eq!(reported(watch, [backwards(-1.0, -0.05); 100].into_iter()), None);
+        assert_eq!(reported(watch, [backwards(-1.0, 0.0); 12].into_iter()), Some(9));
+        assert_eq!(reported(watch, [backwards(-1.0, 0.05); 12].into_iter()), Some(9));
+        assert_eq!(reported(moving(), [at(1.0, -0.05); 12].into_iter()), Some(9));
+    }
 }

@@ -230,3 +230,6 @@ impl Parabola {
         outside
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -70,3 +70,55 @@ impl Limits {
         !sample.time.is_finite() || sample.time < self.blind
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Limits;
+    use crate::monitor::Sample;
+
+    #[test]
+    fn limits_for_noise_are_five_deviations_of_its_average() {
+        let Limits { period, blind, force_most, hold, smoothing, band, margin, rise } = Limits::for_noise(2e-3, 0.02);
+        assert_eq!((period, blind, force_most, band), (2e-3, 0.0, 1e9, 0.5));
+        let near = |found: f32, expected: f64| (f64::from(found) - expected).abs() < 2e-3 * expected;
+        assert!(near(hold, 0.02) && near(smoothing, 0.04), "{hold} {smoothing}");
+        // √(T/2τ) of white noise is left.
+        let left = 0.02 * libm::sqrt(2e-3 / (2.0 * 0.04));
+        assert!(near(margin, 5.0 * left) && near(rise, 5.0 * left / 0.04), "{margin} {rise}");
+    }
+
+    #[test]
+    fn each_limit_has_its_bounds() {
+        let good = Limits::for_noise(1e-3, 0.02);
+        type Change = fn(&mut Limits) -> &mut f32;
+        let all: [(&str, Change, [f32; 2], [f32; 2]); 8] = [
+            ("monitor.period", |limits| &mut limits.period, [1e-6, 1.0], [0.9e-6, 1.1]),
+            ("monitor.blind", |limits| &mut limits.blind, [0.0, 1e6], [-1e-9, 1.1e6]),
+            ("monitor.force_most", |limits| &mut limits.force_most, [1e-6, 1e9], [0.9e-6, 1.1e9]),
+            ("monitor.hold", |limits| &mut limits.hold, [0.0, 10.0], [-1e-9, 10.1]),
+            ("monitor.smoothing", |limits| &mut limits.smoothing, [0.0, 10.0], [-1e-9, 10.1]),
+            ("monitor.band", |limits| &mut limits.band, [0.0, 100.0], [-1e-9, 100.1]),
+            ("monitor.margin", |limits| &mut limits.margin, [0.0, 1e9], [-1e-9, 1.1e9]),
+            ("monitor.rise", |limits| &mut limits.rise, [0.0, 1e12], [-1e-9, 1.1e12]),
+        ];
+        for (name, field, inside, outside) in all {
+            let with = |value: f32| {
+                let mut limits = good;
+                *field(&mut limits) = value;
+                limits.checked()
+            };
+            // The ends as f32 has them.
+            assert!(with(inside[1]).is_ok() && with(inside[0] * 1.000_001).is_ok(), "{name}");
+            for value in outside.into_iter().chain([f32::NAN, f32::INFINITY]) {
+                assert_eq!(with(value).unwrap_err().parameter, name, "{value}");
+            }
+        }
+    }
+
+    #[test]
+    fn is_blind_before_its_time_and_where_the_time_is_not_known() {
+        let limits = Limits { blind: 0.2, ..Limits::for_noise(1e-3, 0.0) };
+        let at = |time| limits.is_blind(&Sample { time, force: 0.0, speed: 0.0, command: 0.0 });
+        assert_eq!([0.0, 0.199_99, 0.2, 0.3, f32::NAN, f32::INFINITY].map(at), [true, true, false, false, true, true]);
+    }
+}

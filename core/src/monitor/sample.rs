@@ -55,3 +55,36 @@ pub enum Verdict {
     /// The motion has come to the end of the table of a production, beyond which nothing is watched.
     Ended,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Sample;
+
+    const GOOD: Sample = Sample { time: 0.3, force: 1.0, speed: 0.1, command: 0.1 };
+
+    #[test]
+    fn a_sample_is_valid_if_all_of_it_is() {
+        assert!(GOOD.is_valid() && GOOD.measured_force() == Some(1.0));
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for sample in [
+                Sample { time: bad, ..GOOD },
+                Sample { force: bad, ..GOOD },
+                Sample { speed: bad, ..GOOD },
+                Sample { command: bad, ..GOOD },
+            ] {
+                assert!(!sample.is_valid(), "{sample:?}");
+            }
+        }
+        for (force, measured) in [(1e9, true), (-1e9, true), (1.001e9, false), (-1.001e9, false)] {
+            let sample = Sample { force, ..GOOD };
+            assert_eq!((sample.is_valid(), sample.measured_force()), (measured, measured.then_some(force)));
+        }
+    }
+
+    #[test]
+    fn along_is_in_the_direction_of_the_command() {
+        for (command, found) in [(0.1, 2.0), (0.0, 2.0), (-0.0, 2.0), (-0.1, -2.0), (f32::NAN, 2.0)] {
+            assert_eq!(Sample { command, ..GOOD }.along(2.0), found, "{command}");
+        }
+    }
+}

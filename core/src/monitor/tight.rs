@@ -164,4 +164,75 @@ mod tests {
         let Tightness { excess, rise, .. } = last(1.0, greatest);
         assert!(excess.is_finite() && rise.is_finite());
     }
+
+    /// The averages as a filter of first order and one behind it have them, in f64.
+    #[test]
+    #[cfg_attr(miri, ignore = "an interpreter has no time for so many samples")]
+    fn averages_are_those_of_two_filters() {
+        let axes = [(AxisKind::Level, 3, 1.0), (AxisKind::Time, 2, 1.0)];
+        let bytes = example::table(&axes, |node| (1 + node / 2) as f32);
+        let table = Table::<2>::open(&bytes).unwrap();
+        let limits = Limits { margin: 0.1, rise: 3.0, band: 0.5, smoothing: 0.02, ..Limits::for_noise(1e-3, 0.0) };
+        let band = Band::of(&table, 0.25, limits.band).unwrap();
+        let mut watch = TightWatch::default();
+        let (mut beyond, mut slower) = (0.0, 0.0);
+        let weight = 1e-3 / 0.021;
+        for i in 0..400 {
+            let force = 1.25 + 0.4 * libm::sin(0.05 * f64::from(i)) + 0.002 * f64::from(i);
+            let sample = Sample { time: 0.5, force: force as f32, speed: 0.1, command: 0.1 };
+            let found = watch.step(&table, &band, &limits, &sample);
+            beyond += weight * (force - 1.25 - beyond);
+            slower += weight * (beyond - slower);
+            let rise = (beyond - slower) / 0.021;
+            let near = |found: f32, expected: f64| (f64::from(found) - expected).abs() < 1e-4 * (1.0 + expected.abs());
+            assert!(near(found.expected, 1.25) && near(found.band, 0.6), "{i}: {found:?}");
+            assert!(near(found.excess, beyond) && near(found.rise, rise), "{i}: {found:?} {beyond} {rise}");
+            // Beyond the band, or rising by more than the limit and what the band allows within its time.
+            let (over, fast) = (beyond - 0.6, rise - (3.0 + 0.5 / 0.021));
+            if over.abs() > 1e-3 && fast.abs() > 1e-2 {
+                assert_eq!(found.is_tight(), over > 0.0 || fast > 0.0, "{i}: {over} {fast}");
+            }
+        }
+        // A force that rises is tight before its average is beyond the band.
+        let patient = Limits { margin: 2.0, band: 0.0, ..limits };
+        let band = Band::of(&table, 0.25, patient.band).unwrap();
+        let mut watch = TightWatch::default();
+        let sample = Sample { time: 0.5, force: 4.0, speed: 0.1, command: 0.1 };
+        let mut found = (0..100).map(|_| watch.step(&table, &band, &patient, &sample));
+        let tight = found.position(|found| found.is_tight()).unwrap();
+        // 2.75·w and its average give (2.75·w − 2.75·w²)/0.021 > 3 at once, w = 1/21.
+        assert!(tight == 0 && found.next().unwrap().excess < 0.5, "{tight}");
+    }
+
+    #[test]
+    fn without_samples_that_are_compared_it_idles() {
+        let axes = [(AxisKind::Level, 2, 1.0), (AxisKind::Time, 2, 1.0)];
+        let bytes = example::table(&axes, |_| 1.0);
+        let table = Table::<2>::open(&bytes).unwrap();
+        let limits = Limits { hold: 0.0035, ..Limits::for_noise(1e-3, 0.0) };
+        let band = Band::of(&table, 0.0, 0.5).unwrap();
+        let good = Sample { time: 0.5, force: 1.0, speed: 0.1, command: 0.1 };
+        for useless in [Sample { time: 1.5, ..good }, Sample { time: -0.1, ..good }, Sample { force: f32::NAN, ..good }]
+        {
+            let mut watch = TightWatch::default();
+            let mut idles = |sample| {
+                let _ = watch.step(&table, &band, &limits, &sample);
+                watch.is_without(&limits)
+            };
+            assert_eq!([useless; 5].map(&mut idles), [false, false, false, true, true], "{useless:?}");
+            assert_eq!([good, useless, good].map(&mut idles), [false; 3]);
+        }
+    }
+
+    /// What the last command that was not zero says; a command that is no number says nothing.
+    #[test]
+    fn the_way_is_that_of_the_last_command() {
+        let sample = |command, force| Sample { time: 0.5, force, speed: 0.0, command };
+        for (way, bad) in [(1.0, f32::NAN), (1.0, f32::NEG_INFINITY), (-1.0, f32::INFINITY), (-1.0, f32::NAN)] {
+            let start = core::iter::once(sample(way * 0.1, 1.0));
+            let samples = start.chain([sample(bad, 1.0 + way), sample(0.0, 1.0 + way)].into_iter().cycle().take(100));
+            let Tightness { excess, .. } = last(1.0, samples);
+            assert!(excess > 0.9, "{way} {bad}: {excess}");
+        }
+    }
 }
