@@ -4,7 +4,7 @@ use std::{fmt::Write, fs, path::Path, process::Command};
 
 use slipfit_tests::cross::{finished, printed};
 
-use super::{EXAMPLE, FOLDER, HEADERS, ROOT, compiler, compiler_for_target, library, on_target};
+use super::{EXAMPLE, FOLDER, ROOT, compiler, compiler_for_target, library, on_target};
 
 /// The header's structs, each with the names of its fields.
 fn structs() -> Vec<(String, Vec<String>)> {

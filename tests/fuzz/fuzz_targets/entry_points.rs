@@ -45,6 +45,9 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
     let (mut scrubber, mut rounds) = (zeroed::<slipfit_scrubber>(), 0);
     let (mut jam_watch, mut verdict) = (zeroed::<slipfit_jam_watch>(), 0);
     let (mut report, mut estimate) = (zeroed::<slipfit_report>(), zeroed::<slipfit_estimate>());
+    let (mut integers, mut integer) = (zeroed::<slipfit_integers>(), zeroed::<slipfit_integer_lookup>());
+    let (mut ahead, mut force) = (Box::new(zeroed::<slipfit_ahead>()), 0.0);
+    let ahead = &mut *ahead;
     let (length, half) = (bytes.len() as u32, bytes.len() / 2);
     let (mut scene, mut limits) = (scene(SLIPFIT_FRICTION_REGULARISED), zeroed::<slipfit_limits>());
     limits.period = 1e-3;
@@ -53,7 +56,7 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
     unsafe {
         for (call, x, y) in calls {
             let sample = slipfit_sample { time: x, force: y, speed: y, command: x };
-            let status = match call % 22 {
+            let status = match call % 31 {
                 0 => slipfit_predictor_init(&mut predictor, &scene, x),
                 1 => slipfit_predictor_step(&mut predictor),
                 2 => slipfit_predictor_read(&predictor, &mut said),
@@ -87,6 +90,24 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
                 18 => slipfit_jam_watch_init(&mut jam_watch, &limits),
                 19 => slipfit_jam_watch_step(&mut jam_watch, &sample, &mut verdict),
                 20 => slipfit_jam_watch_restart(&mut jam_watch),
+                21 => slipfit_predictor_set_command(&mut predictor, x),
+                22 => slipfit_predictor_restart(&mut predictor),
+                23 => slipfit_integers_init(&mut integers, &table, x, y),
+                24 => slipfit_integers_look_up(&integers, x.to_bits().cast_signed(), &mut integer),
+                25 => {
+                    let limits = slipfit_ahead_limits {
+                        period: 1e-3,
+                        tolerance: 1e-4,
+                        lead: x,
+                        lag: y,
+                        attempts: x.to_bits() % 3,
+                    };
+                    slipfit_ahead_init(ahead, &scene, x, &limits, y.to_bits() % 2000)
+                }
+                26 => slipfit_ahead_step(ahead),
+                27 => slipfit_ahead_plan(ahead, y.to_bits(), x),
+                28 => slipfit_ahead_follow(ahead, x),
+                29 => slipfit_ahead_forecast(ahead, x.to_bits(), &mut force),
                 _ => slipfit_table_look_up(&table, x, y, ptr::null_mut()),
             };
             assert!((SLIPFIT_OK..=SLIPFIT_MONITOR_BAND).contains(&status));

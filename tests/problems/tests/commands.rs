@@ -79,7 +79,7 @@ fn converged(data: &SlideData<f64>, profile: Profile) -> Vec<f64> {
     let (gain, mass) = (data.drive.gain, data.body.mass);
     let slide: CdRomSlide<f64> = cd_rom::from_data(data);
     let slide = slide.driven_by(Commanded { gain, command: profile }).expect("the gain is in bounds");
-    let kernel = Kernel::<f64, _, Rodas4>::new(slide.clone(), 1e-3).expect("the step is in bounds");
+    let kernel = Kernel::<f64, _, Rodas4>::new(slide, 1e-3).expect("the step is in bounds");
     let mut motion = kernel.at_rest(Pose::nominal()).motion;
     let mut h = 1e-5;
     let mut forces = vec![0.0];
