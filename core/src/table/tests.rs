@@ -165,3 +165,18 @@ fn no_rounding_leads_out_of_the_tables_own_range() {
         }
     }
 }
+
+#[test]
+fn refuses_other_axes_and_scenes() {
+    let bytes = example::table(&PLANE, |node| node as f32);
+    let table = Table::<2>::open(&bytes).unwrap();
+    assert_eq!((table.scene_hash(), table.length(), table.bytes()), (7, bytes.len(), &*bytes));
+    assert!(table.expect_scene(7).is_ok() && table.expect_axes([AxisKind::Level, AxisKind::Time]).is_ok());
+    assert_eq!(table.expect_scene(8).unwrap_err(), TableError::Scene { found: 7 });
+    for (kinds, axis) in [([AxisKind::Level, AxisKind::Position], 1), ([AxisKind::Row, AxisKind::Time], 0)] {
+        let error = table.expect_axes(kinds).unwrap_err();
+        assert_eq!(error, TableError::Kind { axis, found: PLANE[axis].0, asked: kinds[axis] });
+    }
+    assert!(matches!(Table::<3>::open(&bytes).unwrap_err(), TableError::Axes { found: 2 }));
+    assert!(table.i16().is_none() && table.f32().is_some());
+}
