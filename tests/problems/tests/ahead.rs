@@ -3,20 +3,16 @@
 //!
 //! `cargo test --release -p slipfit-problems --test ahead -- --nocapture` prints what the guide says of it.
 
+mod common;
+
 use std::{fs, path::Path};
 
+use common::{TOLERANCE, converged, drawn};
 use slipfit_core::{
-    Scalar,
     ahead::{Ahead, Limits, Prediction, State, Status},
     drive::Led,
-    integrator::{Integrator, Rodas4},
-    kernel::Kernel,
     menu::{FrictionData, SlideData},
     pose::Pose,
-    sampling::{
-        normal::score,
-        stream::{Rng, unit_stream},
-    },
 };
 use slipfit_problems::cd_rom::{self, CdRomSlide};
 
@@ -29,7 +25,7 @@ const EARLY: u32 = 70;
 /// The ramp's start (ms).
 const RAMP: usize = 50;
 
-const LIMITS: Limits<f32> = Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 1 };
+const LIMITS: Limits<f32> = Limits { period: 1e-3, tolerance: TOLERANCE, lead: 0.2, lag: 0.2, attempts: 1 };
 
 /// The slide of `data`, every millisecond from its release.
 fn predicted(data: &SlideData<f64>, limits: Limits<f32>, periods: usize) -> Vec<Prediction<f32>> {
@@ -46,43 +42,6 @@ fn predicted(data: &SlideData<f64>, limits: Limits<f32>, periods: usize) -> Vec<
     };
     let run: Vec<_> = (0..EARLY as usize + periods).map(|_| step()).collect();
     run[EARLY as usize - 1..].to_vec()
-}
-
-/// Its drive force (N) every millisecond by steps of fourth order in f64 with a thousandth of the tolerance.
-fn converged(data: &SlideData<f64>, periods: usize) -> Vec<f64> {
-    let tolerance = 1e-3 * f64::from(LIMITS.tolerance);
-    let slide: CdRomSlide<f64> = cd_rom::from_data(data);
-    let kernel = Kernel::<f64, _, Rodas4>::new(slide, 1e-3).expect("the step is in bounds");
-    let mut motion = kernel.at_rest(Pose::nominal()).motion;
-    let mut h = 1e-5;
-    let mut forces = vec![0.0];
-    for period in 0..periods {
-        let [start, end] = [period, period + 1].map(|period| period as f64 * 1e-3);
-        let mut t = start;
-        while t < end {
-            let length = if t + 1.01 * h >= end { end - t } else { h };
-            let step = Rodas4::step(&slide, t, length, &motion);
-            let velocity_error = step.error / data.body.mass;
-            let error = (slide.drive().gain * velocity_error).max(step.drift / data.body.mass / 3e-5) / tolerance;
-            h = length * (0.8 / Scalar::sqrt(Scalar::sqrt(error.max(1e-12)))).clamp(0.2, 3.0);
-            if error <= 1.0 {
-                t = if length == end - t { end } else { t + length };
-                motion = step.motion;
-            }
-        }
-        forces.push(slide.drive().force(end, motion.velocity.z));
-    }
-    forces
-}
-
-/// Unit `index` drawn from Table 2, its gaps independent.
-fn drawn(index: u64) -> SlideData<f64> {
-    let mut random = unit_stream(1, index);
-    let mut data = cd_rom::data(0.0);
-    for (gap, [mean, deviation]) in data.body.gaps.iter_mut().zip(cd_rom::TABLE_2) {
-        *gap = (mean + deviation * score::<f64>(random.next_u64())) * 1e-3;
-    }
-    data
 }
 
 /// The greatest error (% of the peak) of the values that are said to be current, and when (ms).
@@ -170,7 +129,7 @@ fn survey(name: &str, units: u64, periods: usize) -> (f64, Vec<f64>) {
     for index in 0..units {
         let data = drawn(index);
         let run = predicted(&data, LIMITS, periods);
-        let (found, ms) = error(&run, &converged(&data, periods));
+        let (found, ms) = error(&run, &converged(&data, data.drive, periods));
         if found > worst.0 {
             worst = (found, ms, index);
         }
@@ -250,7 +209,7 @@ fn forced_steps_are_counted_and_stay_bounded() {
     for index in 0..40 {
         let data = hard(index);
         let run = predicted(&data, Limits { lag: 0.004, ..LIMITS }, 200);
-        let forces = converged(&data, 200);
+        let forces = converged(&data, data.drive, 200);
         let peak = forces.iter().fold(0.0f64, |peak, force| peak.max(force.abs()));
         for value in &run[RAMP..] {
             // At the time that the value is of.

@@ -2,20 +2,19 @@
 //!
 //! `cargo test --release -p slipfit-problems --test commands -- --nocapture` prints what the guide says of it.
 
+mod common;
+
 use std::f64::consts::TAU;
 
+use common::{TOLERANCE, converged, drawn};
 use slipfit_core::{
     ParameterError, Scalar,
     ahead::{Ahead, Limits, State},
     drive::{Command, Commandable as _, Commanded, Led, Piece},
-    integrator::{ImplicitEuler, Integrator, Rodas4},
+    integrator::ImplicitEuler,
     kernel::Kernel,
     menu::SlideData,
     pose::Pose,
-    sampling::{
-        normal::score,
-        stream::{Rng, unit_stream},
-    },
 };
 use slipfit_problems::cd_rom::{self, CdRomSlide};
 
@@ -74,43 +73,13 @@ fn trapezoids(t: f64) -> f64 {
 /// Periods (ms) of a run.
 const PERIODS: usize = 1900;
 
-/// The drive's force (N) every millisecond, by steps of fourth order in f64 with a thousandth of the tolerance.
-fn converged(data: &SlideData<f64>, profile: Profile) -> Vec<f64> {
-    let (gain, mass) = (data.drive.gain, data.body.mass);
-    let slide: CdRomSlide<f64> = cd_rom::from_data(data);
-    let slide = slide.driven_by(Commanded { gain, command: profile }).expect("the gain is in bounds");
-    let kernel = Kernel::<f64, _, Rodas4>::new(slide, 1e-3).expect("the step is in bounds");
-    let mut motion = kernel.at_rest(Pose::nominal()).motion;
-    let mut h = 1e-5;
-    let mut forces = vec![0.0];
-    for period in 0..PERIODS {
-        let [start, end] = [period, period + 1].map(|period| period as f64 * 1e-3);
-        let mut t = start;
-        while t < end {
-            let length = if t + 1.01 * h >= end { end - t } else { h };
-            let step = Rodas4::step(&slide, t, length, &motion);
-            let error = (gain * step.error / mass).max(step.drift / mass / 3e-5) / 7e-8;
-            h = length * (0.8 / Scalar::sqrt(Scalar::sqrt(error.max(1e-12)))).clamp(0.2, 3.0);
-            if error <= 1.0 {
-                t = if length == end - t { end } else { t + length };
-                motion = step.motion;
-            }
-        }
-        forces.push(gain * ((profile.speed)(end) - motion.velocity.z));
-    }
-    forces
+/// The drive's force (N) every millisecond.
+fn forces(data: &SlideData<f64>, profile: Profile) -> Vec<f64> {
+    converged(data, Commanded { gain: data.drive.gain, command: profile }, PERIODS)
 }
 
 /// Levels, and units drawn from Table 2 with independent gaps.
 fn units() -> Vec<(String, SlideData<f64>)> {
-    let drawn = |index| {
-        let mut random = unit_stream(1, index);
-        let mut data = cd_rom::data(0.0);
-        for (gap, [mean, deviation]) in data.body.gaps.iter_mut().zip(cd_rom::TABLE_2) {
-            *gap = (mean + deviation * score::<f64>(random.next_u64())) * 1e-3;
-        }
-        data
-    };
     let levels = [0.0, 1.0, 2.5, 4.0].map(|n| (format!("n = {n}"), cd_rom::data(n)));
     levels.into_iter().chain((0..6).map(|index| (format!("unit {index}"), drawn(index)))).collect()
 }
@@ -135,7 +104,7 @@ const EARLY: u32 = 70;
 /// With S-curves, reversals, stops and jumps of the acceleration, planned a horizon in advance.
 #[test]
 fn a_planned_command_is_met_and_never_missed() {
-    let limits = Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 2 };
+    let limits = Limits { period: 1e-3, tolerance: TOLERANCE, lead: 0.2, lag: 0.2, attempts: 2 };
     for profile in [
         Profile { name: "S-curves with stops", speed: s_curves },
         Profile { name: "reversal", speed: reversal },
@@ -144,7 +113,7 @@ fn a_planned_command_is_met_and_never_missed() {
     ] {
         let (mut worst, mut least) = ((0.0, String::new()), f32::INFINITY);
         for (unit, data) in units() {
-            let forces = converged(&data, profile);
+            let forces = forces(&data, profile);
             let mut ahead = ahead(&data, limits);
             let at = |t: f32| (profile.speed)(f64::from(t)) as f32;
             let mut state: State<f32, _, 6, 256> = ahead.at_rest(Pose::nominal(), EARLY, at);
@@ -189,7 +158,7 @@ fn followed(profile: Profile, limits: Limits<f32>, enough: f32) -> Followed {
     let (mut enough_periods, mut periods) = (0, 0);
     let mut errors = HORIZONS.map(|_| Vec::new());
     for (_, data) in units() {
-        let forces = converged(&data, profile);
+        let forces = forces(&data, profile);
         let peak = peak(&forces);
         let mut sums = HORIZONS.map(|_| (0.0, 0u32));
         let mut ahead = ahead(&data, limits);
@@ -268,7 +237,7 @@ fn the_kernel_follows_any_command() {
     ] {
         let mut errors = [0.0f64; 2];
         for (_, data) in units() {
-            let forces = converged(&data, profile);
+            let forces = forces(&data, profile);
             let slide: CdRomSlide<f32> = cd_rom::from_data(&data.cast(|x| x as f32));
             let mut kernel = Kernel::<f32, _, ImplicitEuler<4>>::new(slide, 1e-3).expect("the step is in bounds");
             let mut state = kernel.at_rest(Pose::nominal());
