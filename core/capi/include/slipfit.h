@@ -145,7 +145,8 @@ typedef struct slipfit_ahead_limits {
   float lead;
   // The lag behind the clock (s) at which steps are forced, whatever their error, 4 to 1000 periods.
   float lag;
-  // Attempts at a step in each period, 1 to SLIPFIT_AHEAD_ATTEMPTS_MOST: 1 for strokes, 2 or 3 for commands that reverse often.
+  // Attempts at a step in each period, 1 to SLIPFIT_AHEAD_ATTEMPTS_MOST: 1 for strokes, 2 for planned commands that reverse,
+  // 3 or 4 for commands that are followed.
   uint32_t attempts;
 } slipfit_ahead_limits;
 
@@ -159,8 +160,8 @@ typedef struct slipfit_ahead_prediction {
   float velocity;
   // How far the slide is along the drive (m), from where it was at rest.
   float position;
-  // Of a command that was followed: the commanded speed (m/s) less the one that was reckoned with when this instant was to come.
-  // Else 0.
+  // Of a command that was followed: the commanded speed (m/s) less the one that was reckoned with when this instant was to come. 0
+  // where it had not been predicted yet, where the prediction is behind, and of other commands.
   float deviation;
   // How far beyond the clock the motion is known (s); negative where the prediction is behind.
   float lead;
@@ -420,7 +421,7 @@ typedef struct slipfit_wear {
 // The prediction is behind the clock: what it says holds for an earlier time.
 #define SLIPFIT_BEHIND 9
 
-// The motion is already predicted for that instant, by another command.
+// The motion is already predicted for that instant.
 #define SLIPFIT_LATE 10
 
 // The header that the program was compiled with is not the library's.
@@ -594,9 +595,9 @@ slipfit_status slipfit_ahead_rest(struct slipfit_ahead *storage,
 slipfit_status slipfit_ahead_horizon(const struct slipfit_ahead *storage, uint32_t *periods);
 
 // The commanded `speed` (m/s, within 1000 either way) so many `periods` after the end of the coming one, of a command that is known in
-// advance, in place of the scene's ramp. Told for the horizon once a period, and once for each period up to there before the first, it
-// is known whenever it is needed; what is not told stays what it was the period before. SLIPFIT_PARAMETER beyond the horizon;
-// SLIPFIT_LATE if the motion is already predicted for that instant: slipfit_ahead_restart takes that back.
+// advance, in place of the scene's ramp. After slipfit_ahead_init, _rest and _restart plan 0 to the horizon in turn, then the horizon
+// once a period before each step. The first one that is told then holds up to the horizon, until the next are. SLIPFIT_PARAMETER beyond
+// the horizon; SLIPFIT_LATE if the motion is already predicted for that instant: slipfit_ahead_restart takes that back.
 //
 // # Safety
 // As for slipfit_ahead_step.
@@ -606,14 +607,14 @@ slipfit_status slipfit_ahead_plan(struct slipfit_ahead *storage,
 
 // The commanded `speed` (m/s, within 1000 either way) at the end of the coming period, of a command that is not known in advance, in
 // place of the scene's ramp; once a period, before slipfit_ahead_step. A parabola through what it was in the last eight periods says what
-// it will be at the horizon; at first and after slipfit_ahead_restart it stays what it is.
+// it will be at the horizon; at first and after slipfit_ahead_restart it counts as constant, until eight periods are known.
 //
 // # Safety
 // As for slipfit_ahead_step.
 slipfit_status slipfit_ahead_follow(struct slipfit_ahead *storage,
                                     float speed);
 
-// One period, in the same instructions whatever the motion does: the clock goes on by it, and one step is attempted.
+// One period, in the same instructions whatever the motion does: the clock goes on by it, and steps are attempted.
 // SLIPFIT_BEHIND if the motion is not known at the new instant.
 //
 // # Safety
@@ -637,8 +638,8 @@ slipfit_status slipfit_ahead_forecast(const struct slipfit_ahead *storage,
                                       float *force);
 
 // Goes on from the motion at the present instant as a unit of tolerance level `n` of `*scene`: for when the command or what is
-// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0; a command that was told is to be
-// told again, from the coming period on. Where the prediction is behind, it goes on from the last motion known. It keeps its limits, and
+// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0; a command that was told stays
+// until it is told again, from the coming period on. Where the prediction is behind, it goes on from the last motion known. It keeps its limits, and
 // if it is refused everything else too.
 //
 // # Safety
@@ -767,7 +768,7 @@ slipfit_status slipfit_scrubber_check(struct slipfit_scrubber *storage,
 
 // Writes to `*seal` a number that goes by every bit of the `size` bytes at `object`, a multiple of four: that of an object of this library,
 // with its parameters and its state. Take it after the last call that changed the object, and compare it before the next use: one flipped
-// bit always changes it, more of them all but once in four billion times. Four instructions a word on a Cortex-M4.
+// bit always changes it, and several do but by chance, once in four billion times.
 //
 // # Safety
 // Pointers that are neither null nor misaligned point at what their types say; the object's memory has been written before, and nobody

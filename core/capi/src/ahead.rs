@@ -38,7 +38,8 @@ pub struct slipfit_ahead_limits {
     pub lead: f32,
     /// The lag behind the clock (s) at which steps are forced, whatever their error, 4 to 1000 periods.
     pub lag: f32,
-    /// Attempts at a step in each period, 1 to SLIPFIT_AHEAD_ATTEMPTS_MOST: 1 for strokes, 2 or 3 for commands that reverse often.
+    /// Attempts at a step in each period, 1 to SLIPFIT_AHEAD_ATTEMPTS_MOST: 1 for strokes, 2 for planned commands that reverse,
+    /// 3 or 4 for commands that are followed.
     pub attempts: u32,
 }
 
@@ -54,8 +55,8 @@ pub struct slipfit_ahead_prediction {
     pub velocity: f32,
     /// How far the slide is along the drive (m), from where it was at rest.
     pub position: f32,
-    /// Of a command that was followed: the commanded speed (m/s) less the one that was reckoned with when this instant was to come.
-    /// Else 0.
+    /// Of a command that was followed: the commanded speed (m/s) less the one that was reckoned with when this instant was to come. 0
+    /// where it had not been predicted yet, where the prediction is behind, and of other commands.
     pub deviation: f32,
     /// How far beyond the clock the motion is known (s); negative where the prediction is behind.
     pub lead: f32,
@@ -211,9 +212,9 @@ pub unsafe extern "C" fn slipfit_ahead_horizon(storage: *const slipfit_ahead, pe
 }
 
 /// The commanded `speed` (m/s, within 1000 either way) so many `periods` after the end of the coming one, of a command that is known in
-/// advance, in place of the scene's ramp. Told for the horizon once a period, and once for each period up to there before the first, it
-/// is known whenever it is needed; what is not told stays what it was the period before. SLIPFIT_PARAMETER beyond the horizon;
-/// SLIPFIT_LATE if the motion is already predicted for that instant: slipfit_ahead_restart takes that back.
+/// advance, in place of the scene's ramp. After slipfit_ahead_init, _rest and _restart plan 0 to the horizon in turn, then the horizon
+/// once a period before each step. The first one that is told then holds up to the horizon, until the next are. SLIPFIT_PARAMETER beyond
+/// the horizon; SLIPFIT_LATE if the motion is already predicted for that instant: slipfit_ahead_restart takes that back.
 ///
 /// # Safety
 /// As for slipfit_ahead_step.
@@ -236,7 +237,7 @@ pub unsafe extern "C" fn slipfit_ahead_plan(storage: *mut slipfit_ahead, periods
 
 /// The commanded `speed` (m/s, within 1000 either way) at the end of the coming period, of a command that is not known in advance, in
 /// place of the scene's ramp; once a period, before slipfit_ahead_step. A parabola through what it was in the last eight periods says what
-/// it will be at the horizon; at first and after slipfit_ahead_restart it stays what it is.
+/// it will be at the horizon; at first and after slipfit_ahead_restart it counts as constant, until eight periods are known.
 ///
 /// # Safety
 /// As for slipfit_ahead_step.
@@ -251,7 +252,7 @@ pub unsafe extern "C" fn slipfit_ahead_follow(storage: *mut slipfit_ahead, speed
     })
 }
 
-/// One period, in the same instructions whatever the motion does: the clock goes on by it, and one step is attempted.
+/// One period, in the same instructions whatever the motion does: the clock goes on by it, and steps are attempted.
 /// SLIPFIT_BEHIND if the motion is not known at the new instant.
 ///
 /// # Safety
@@ -308,8 +309,8 @@ pub unsafe extern "C" fn slipfit_ahead_forecast(
 }
 
 /// Goes on from the motion at the present instant as a unit of tolerance level `n` of `*scene`: for when the command or what is
-/// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0; a command that was told is to be
-/// told again, from the coming period on. Where the prediction is behind, it goes on from the last motion known. It keeps its limits, and
+/// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0; a command that was told stays
+/// until it is told again, from the coming period on. Where the prediction is behind, it goes on from the last motion known. It keeps its limits, and
 /// if it is refused everything else too.
 ///
 /// # Safety

@@ -47,6 +47,8 @@ pub(crate) struct Predictor {
     kernel: Kernel<f32, Unit<Friction>, ImplicitEuler<4>>,
     state: StateOf<f32, Unit<Friction>, 6>,
     report: Report<f32>,
+    /// Force of the drive (N) at the end of the last step: another command counts from the next one on.
+    force: f32,
 }
 
 // SAFETY: plain words.
@@ -81,17 +83,20 @@ const NO_STEP: Report<f32> = Report { residual: 0.0, error: 0.0 };
 impl Predictor {
     fn new(slide: Unit<Friction>, step: f32) -> Result<Self, Refusal> {
         let kernel = Kernel::new(slide, step)?;
-        Ok(Self { state: kernel.at_rest(Pose::nominal()), kernel, report: NO_STEP })
+        let mut made = Self { state: kernel.at_rest(Pose::nominal()), kernel, report: NO_STEP, force: 0.0 };
+        made.force = made.force();
+        Ok(made)
     }
 
     /// One step; whether the motion could be moved. One copy in the code serves the trial too.
     #[inline(never)]
     fn advance(&mut self) -> bool {
         self.report = self.kernel.step(&mut self.state);
+        self.force = self.force();
         self.report.residual.is_finite()
     }
 
-    /// Force of the drive (N).
+    /// Force of the drive (N) now.
     fn force(&self) -> f32 {
         self.kernel.mechanism().drive().force(self.kernel.time(self.state.steps), self.state.motion.velocity.z)
     }
@@ -101,7 +106,7 @@ impl Predictor {
     fn holds(mut self, mut fine: Self, greatest: f32) -> bool {
         (0..TRIAL).all(|_| {
             let moved = self.advance() & fine.advance() & fine.advance();
-            moved && (self.force() - fine.force()).abs() <= TRIAL_ERROR * greatest
+            moved && (self.force - fine.force).abs() <= TRIAL_ERROR * greatest
         })
     }
 }
@@ -188,7 +193,7 @@ pub unsafe extern "C" fn slipfit_predictor_restart(storage: *mut slipfit_predict
         // SAFETY: the caller's promise.
         let predictor = unsafe { object_mut(storage)? };
         predictor.state = predictor.kernel.at_rest(Pose::nominal());
-        predictor.report = NO_STEP;
+        (predictor.report, predictor.force) = (NO_STEP, predictor.force());
         Ok(())
     })
 }
@@ -205,11 +210,10 @@ pub unsafe extern "C" fn slipfit_predictor_read(
     // SAFETY: the caller's promise.
     status(|| unsafe {
         output(prediction, || {
-            let predictor = object(storage)?;
-            let Predictor { kernel, state, report } = predictor;
+            let Predictor { kernel, state, report, force } = object(storage)?;
             let (time, velocity) = (kernel.time(state.steps), state.motion.velocity.z);
             let position = state.motion.pose.displacement_w.z;
-            Ok(slipfit_prediction { time, force: predictor.force(), velocity, position, residual: report.residual })
+            Ok(slipfit_prediction { time, force: *force, velocity, position, residual: report.residual })
         })
     })
 }

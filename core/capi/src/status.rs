@@ -27,7 +27,7 @@ pub const SLIPFIT_NOT_FINITE: slipfit_status = 7;
 pub const SLIPFIT_STEP: slipfit_status = 8;
 /// The prediction is behind the clock: what it says holds for an earlier time.
 pub const SLIPFIT_BEHIND: slipfit_status = 9;
-/// The motion is already predicted for that instant, by another command.
+/// The motion is already predicted for that instant.
 pub const SLIPFIT_LATE: slipfit_status = 10;
 /// The header that the program was compiled with is not the library's.
 pub const SLIPFIT_HEADER: slipfit_status = 11;

@@ -13,8 +13,8 @@ pub(super) struct Told<S> {
     speeds: [S; 2 * SPAN + 1],
     /// How far (m/s times periods) the motion has strayed, since the command was another one than was reckoned with.
     strayed: S,
-    /// 1 where what was told says nothing of what comes, else 0.
-    is_past: S,
+    /// Setpoints since the last ones were forgotten, as far as they count.
+    count: S,
 }
 
 /// The parabola through three of the setpoints told.
@@ -28,29 +28,32 @@ pub(super) struct Parabola<S> {
 impl<S: Scalar> Told<S> {
     /// Nothing.
     pub fn new() -> Self {
-        Self { speeds: [S::zero(); 2 * SPAN + 1], strayed: S::zero(), is_past: S::one() }
+        Self { speeds: [S::zero(); 2 * SPAN + 1], strayed: S::zero(), count: S::zero() }
     }
 
-    /// Forgets the setpoints: until there are new ones the command stays what it is.
+    /// Forgets the setpoints: until there are enough new ones the command counts as constant.
     #[inline(always)]
     pub fn forget(&mut self) {
-        self.is_past = S::one();
+        self.count = S::zero();
     }
 
     /// Takes in the newest setpoint `speed` (m/s). Where the motion was predicted by another one, of which it is the `deviation` (m/s),
-    /// that is made up for over four times the `horizon` (periods): a mechanism whose force goes by its place would else drift.
+    /// that is made up for over four times the `horizon` (periods): a mechanism whose force goes by its place would else drift. What is
+    /// not finite counts as what was before, and as no deviation.
     #[inline(always)]
     pub fn tell(&mut self, speed: S, deviation: S, horizon: S) -> Parabola<S> {
-        let (zero, is_past) = (S::zero(), self.is_past);
+        let (zero, one) = (S::zero(), S::one());
+        let speed = speed.or_old(one, self.speeds[0]);
         let mut newer = speed;
         for told in &mut self.speeds {
-            newer = core::mem::replace(told, is_past.select_gt(zero, speed, newer));
+            newer = core::mem::replace(told, newer);
         }
-        self.is_past = zero;
-        self.strayed += deviation;
+        self.count = (self.count + one).at_most(S::from_f64(2.0 * SPAN as f64 + 1.0));
+        self.strayed += deviation.or_old(one, zero);
         let (newest, middle, oldest) = (self.speeds[0], self.speeds[SPAN], self.speeds[2 * SPAN]);
-        let first = newest - middle;
-        let second = (first - (middle - oldest)) * S::from_f64(0.5);
+        let known = self.count.select_gt(S::from_f64(2.0 * SPAN as f64), one, zero);
+        let first = (newest - middle) * known;
+        let second = (first - (middle - oldest) * known) * S::from_f64(0.5);
         Parabola { newest: newest + self.strayed / (horizon * S::from_f64(4.0)), first, second }
     }
 }
@@ -66,7 +69,7 @@ impl<S: Scalar> Parabola<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::{SPAN, Told};
+    use super::{Parabola, SPAN, Told};
 
     #[test]
     fn a_parabola_is_extrapolated_exactly() {
@@ -75,13 +78,25 @@ mod tests {
         let mut last = None;
         told.tell(77.0, 0.0, 20.0);
         told.forget();
-        assert_eq!(told.tell(0.3, 0.0, 20.0).after(10.0), 0.3);
         for k in 0..=2 * SPAN {
+            // Constant until enough is known.
+            assert!(last.is_none_or(|last: Parabola<f64>| last.after(20.0) == y(k as f64 - 1.0)), "{k}");
             last = Some(told.tell(y(k as f64), 0.0, 20.0));
         }
         for after in [0.0, 1.0, 5.0, 20.0] {
             let found = last.unwrap().after(after);
             assert!(libm::fabs(found - y(2.0 * SPAN as f64 + after)) < 1e-13, "{after}: {found}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_says_nothing() {
+        let mut told = Told::new();
+        for _ in 0..20 {
+            told.tell(0.1, 0.0, 20.0);
+        }
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(told.tell(bad, bad, 20.0).after(20.0), 0.1);
         }
     }
 

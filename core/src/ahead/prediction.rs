@@ -34,8 +34,9 @@ pub struct Prediction<S> {
     pub position: S,
     /// Force of the drive (N).
     pub force: S,
-    /// The commanded speed (m/s) less the one that was reckoned with for this instant, when it was the future: 0 of a command that was
-    /// planned, or is behind. The real speed differs by about as much, the force by what friction and inertia make of it.
+    /// The commanded speed (m/s) less the one that was reckoned with for this instant, when it was the future. 0 of a command that was
+    /// planned, where the prediction is behind, and where the instant had not been predicted yet. The real speed differs by about as
+    /// much, the force by what friction and inertia make of it.
     pub deviation: S,
     /// How far beyond the clock the motion is known (s); negative where the prediction is behind.
     pub lead: S,

@@ -33,7 +33,8 @@ struct Bracket<S> {
 
 impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
     const MASK: u32 = {
-        assert!(N.is_power_of_two() && N >= 8 && N <= 1024, "a ring holds a power of two, 8 to 1024");
+        // More would reach over half of the range of ticks while the first half is filled.
+        assert!(N.is_power_of_two() && N >= 8 && N <= 256, "a ring holds a power of two, 8 to 256");
         N as u32 - 1
     };
 
@@ -63,6 +64,12 @@ impl<S: Scalar, P: Copy, const D: usize, const N: usize> Ring<S, P, D, N> {
     #[inline(always)]
     fn knot(&self, count: u32) -> &Knot<S, P, D> {
         &self.knots[Self::place(count)]
+    }
+
+    /// Whether there is a motion but that at rest.
+    #[inline(always)]
+    pub fn has_moved(&self) -> bool {
+        self.newest != 0
     }
 
     /// When the newest motion holds (ticks).

@@ -127,6 +127,90 @@ fn a_command_that_jumps_is_followed_after_a_restart() {
     assert!(libm::fabs(last.speed - speed) < 2e-3 && last.lead > 0.0, "{last:?} {speed}");
 }
 
+/// The first speed that is planned after a restart holds until others are; nothing of the plan before is left.
+#[test]
+fn a_plan_after_a_restart_is_the_whole_plan() {
+    let mut ahead = ahead();
+    let mut state: State<_, _, 1, 64> = ahead.at_rest(1.0, 0, |_| 0.1);
+    (0..200).for_each(|_| _ = ahead.step(&mut state));
+    let horizon = ahead.horizon(&state);
+    // What is refused changes nothing.
+    let before = state.clone();
+    assert!(!ahead.plan(&mut state, 0, 0.0) && !ahead.plan(&mut state, horizon + 1, 0.0) && state == before);
+    ahead.restart(&mut state);
+    assert!(ahead.plan(&mut state, 0, 0.0));
+    let mut last = f64::INFINITY;
+    for _ in 0..400 {
+        let said = ahead.step(&mut state);
+        let reckoned = said.force / GAIN + said.speed;
+        assert!(said.lead < 0.0 || libm::fabs(reckoned) < 1e-12, "{said:?}");
+        last = said.speed;
+        assert!(ahead.plan(&mut state, horizon, 0.0));
+    }
+    assert!(libm::fabs(last) < 1e-4, "{last}");
+}
+
+/// Where a command is followed, every value that is current says by which command it was reckoned: force/gain + speed + deviation is
+/// what was told.
+#[test]
+fn what_is_followed_and_what_is_reckoned_differ_by_the_deviation() {
+    for (lead, attempts) in [(0.004, 1), (0.01, 1), (0.02, 2), (0.05, 4)] {
+        let mut ahead = Ahead::new(body(), Limits { lead, attempts, ..LIMITS }).unwrap();
+        let mut state: State<_, _, 1, 64> = ahead.at_rest(1.0, 3, |_| 0.0);
+        let mut current = 0;
+        for period in 0..3000 {
+            let t = f64::from(period) * 1e-3;
+            // With corners, at which the lead is lost, and a restart on the way.
+            let told = 0.1 * libm::sin(9.0 * t) + if period % 700 > 350 { 0.05 } else { 0.0 };
+            if period == 1500 {
+                ahead.restart(&mut state);
+            }
+            ahead.follow(&mut state, told);
+            let said = ahead.step(&mut state);
+            if said.lead >= 0.0 && period > 3 {
+                current += 1;
+                let reckoned = said.force / GAIN + said.speed + said.deviation;
+                assert!(libm::fabs(reckoned - told) < 1e-9, "{lead} {period}: {reckoned} {told} {said:?}");
+            }
+        }
+        assert!(current > 1000, "{lead}: {current}");
+    }
+}
+
+/// A mechanism that is restarted before its release is released when it should be.
+#[test]
+fn a_restart_before_the_release_does_not_bring_it_forward() {
+    let mut ahead = ahead();
+    for at in [1, 5, 39] {
+        let mut state: State<_, _, 1, 64> = ahead.at_rest(1.0, 40, |_| 0.1);
+        for period in 1..=140 {
+            if period == at {
+                ahead.restart(&mut state);
+                // What is commanded before the release does not matter, and may be told.
+                assert!(ahead.plan(&mut state, 0, 0.1));
+            }
+            let said = ahead.step(&mut state);
+            let speed = speed_at(f64::from(period - 40) * 1e-3);
+            let is_current = matches!(said.status(), Status::Ahead(_));
+            assert!(!is_current || libm::fabs(said.speed - speed) < 1e-4, "{at} {period}: {said:?} {speed}");
+            assert!(is_current || period < 60, "{at} {period}: {said:?}");
+        }
+    }
+}
+
+/// A command that is no number says nothing, and leaves nothing behind.
+#[test]
+fn a_followed_command_that_is_no_number_is_passed_over() {
+    let mut ahead = Ahead::new(body(), Limits { lead: 0.02, ..LIMITS }).unwrap();
+    let mut state: State<_, _, 1, 64> = ahead.at_rest(1.0, 0, |_| 0.0);
+    for period in 0..600 {
+        ahead.follow(&mut state, if period % 100 == 50 { f64::NAN } else { 0.1 });
+        let said = ahead.step(&mut state);
+        assert!(said.speed.is_finite() && said.force.is_finite() && said.deviation.is_finite(), "{period}: {said:?}");
+        assert!(period < 300 || (said.lead > 0.0 && libm::fabs(said.speed - 0.1) < 1e-2), "{period}: {said:?}");
+    }
+}
+
 #[test]
 fn goes_on_from_the_present_instant_with_another_command() {
     let mut ahead = ahead();

@@ -101,6 +101,27 @@ fn flips_in_a_table_are_found_within_a_round() {
     }
 }
 
+/// Two bits, the same one of two words too, as a bad line of data makes them.
+#[test]
+#[cfg_attr(miri, ignore = "too long for an interpreter")]
+fn pairs_of_flips_are_found() {
+    let mut words: [u32; 64] = std::array::from_fn(|i| random(i as u64) as u32);
+    let sealed = seal(&words);
+    for bit in 0..32 {
+        for one in 0..64 {
+            for other in 0..one {
+                for more in [bit, (bit + 1) % 32, (bit + 13) % 32] {
+                    words[one] ^= 1 << bit;
+                    words[other] ^= 1 << more;
+                    assert_ne!(seal(&words), sealed, "{one} {other} {bit} {more}");
+                    words[one] ^= 1 << bit;
+                    words[other] ^= 1 << more;
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn what_is_no_memory_of_words_is_refused() {
     let (object, mut found) = ([0u32; 4], 0);

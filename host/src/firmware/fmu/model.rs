@@ -35,8 +35,8 @@ pub(super) fn gap(name: &str, mean: &str, deviation: &str, allowed: [f64; 2]) ->
 }
 
 /// What the description says of a command whose start value is the end of the scene's ramp.
-pub(super) const COMMAND: &str = "commanded speed; as it is when the first step is taken it is the end of the scene's ramp, and set \
-                                  after that it is the command at once";
+pub(super) const COMMAND: &str = "commanded speed; as it is when initialization ends it is the end of the scene's ramp, and set after \
+                                  that it is the command at once";
 
 /// Statements that give the `drive` its command `value`, an expression of what is set.
 pub(super) fn command(drive: &str, value: &str) -> String {
