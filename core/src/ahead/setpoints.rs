@@ -36,7 +36,6 @@ impl<S: Scalar, const N: usize> Setpoints<S, N> {
     #[inline(always)]
     fn place(&self, periods: i32) -> (usize, usize) {
         let place = self.now.wrapping_add(offset(periods)) as usize;
-
         ((place / 2) & (N - 1), place & 1)
     }
 
