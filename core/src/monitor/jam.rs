@@ -178,6 +178,10 @@ mod tests {
         let mut watch = JamWatch::default();
         assert_eq!(watch.step(&limits(), &at(1.0, tenth)), Verdict::Free);
         assert_eq!(reported(watch, [at(1.0, 0.0); 100].into_iter()), None, "it never moved");
+        // Nor does it move with a command where there is none.
+        let mut watch = JamWatch::default();
+        assert_eq!(watch.step(&limits(), &Sample { command: 0.0, ..at(1.0, 0.05) }), Verdict::Free);
+        assert_eq!(reported(watch, [at(1.0, 0.0); 100].into_iter()), None, "it moved without a command");
         assert_eq!(reported(moving(), [at(1.0, tenth); 100].into_iter()), None);
         assert_eq!(reported(moving(), [at(1.0, tenth.next_down()); 100].into_iter()), Some(9));
         assert_eq!(reported(moving(), [at(3.0, 0.05); 100].into_iter()), None);
