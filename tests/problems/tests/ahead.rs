@@ -10,7 +10,7 @@ use std::{fs, path::Path};
 use common::{TOLERANCE, converged, drawn};
 use slipfit_core::{
     ahead::{Ahead, Limits, Prediction, State, Status},
-    drive::Led,
+    drive::{Drive, Led},
     menu::{FrictionData, SlideData},
     pose::Pose,
 };
@@ -29,6 +29,11 @@ const LIMITS: Limits<f32> = Limits { period: 1e-3, tolerance: TOLERANCE, lead: 0
 
 /// The slide of `data`, every millisecond from its release.
 fn predicted(data: &SlideData<f64>, limits: Limits<f32>, periods: usize) -> Vec<Prediction<f32>> {
+    predicted_from_the_start(data, limits, periods)[EARLY as usize - 1..].to_vec()
+}
+
+/// The slide of `data`, every millisecond from the clock's start.
+fn predicted_from_the_start(data: &SlideData<f64>, limits: Limits<f32>, periods: usize) -> Vec<Prediction<f32>> {
     let slide: CdRomSlide<f32> = cd_rom::from_data(&data.cast(|x| x as f32));
     let ramp = *slide.drive();
     let slide = slide.driven_by(Led::led(ramp.gain)).expect("the gain is in bounds");
@@ -40,8 +45,7 @@ fn predicted(data: &SlideData<f64>, limits: Limits<f32>, periods: usize) -> Vec<
         assert!(ahead.plan(&mut state, horizon, command));
         ahead.step(&mut state)
     };
-    let run: Vec<_> = (0..EARLY as usize + periods).map(|_| step()).collect();
-    run[EARLY as usize - 1..].to_vec()
+    (0..EARLY as usize + periods).map(|_| step()).collect()
 }
 
 /// The greatest error (% of the peak) of the values that are said to be current, and when (ms).
@@ -223,4 +227,47 @@ fn forced_steps_are_counted_and_stay_bounded() {
     }
     println!("{forced} of {periods} steps are forced; after the ramp's start the error is at most {worst:.1} %");
     assert!(forced > periods / 4 && worst < 80.0, "{forced} of {periods}, {worst} %");
+}
+
+/// What the guide says of its example: the lead (ms) after the first call, its least and after which call that is, when the unit is
+/// released, at the ramp's start and at 0.2 s.
+#[test]
+fn the_guide_has_the_leads_of_its_example() {
+    let run = predicted_from_the_start(&cd_rom::data(2.5), LIMITS, 200);
+    let lead = |call: usize| (1e3 * run[call - 1].lead).round();
+    let least = (1..=120).min_by(|a, b| run[a - 1].lead.total_cmp(&run[b - 1].lead)).expect("calls");
+    assert_eq!((least, [1, least, 70, 120, 270].map(lead)), (63, [69.0, 36.0, 42.0, 72.0, 199.0]));
+}
+
+/// A stroke at n = 2.5 and 100 mm/s that continues as another unit or with another command from 0.75 s on: the greatest lag, and how long
+/// it takes until the prediction is ahead again.
+#[test]
+fn a_restarted_stroke_catches_up() {
+    let made = |n: f64| -> (_, Drive<f32>) {
+        let slide: CdRomSlide<f32> = cd_rom::from_data(&cd_rom::data(n).cast(|x| x as f32));
+        let driven = slide.driven_by(Led::led(slide.drive().gain)).expect("the gain is in bounds");
+        (Ahead::new(driven, LIMITS).expect("the limits are in bounds"), *slide.drive())
+    };
+    let (mut lag, mut behind) = (0.0f32, 0);
+    for (n, speed) in [(2.5, 0.1f32), (2.5, 0.05), (2.25, 0.1), (2.25, 0.05)] {
+        let (mut ahead, mut ramp) = made(2.5);
+        let mut state: State<f32, _, 6, KEPT> = ahead.at_rest(Pose::nominal(), EARLY, |t| ramp.command(t));
+        let horizon = ahead.horizon(&state);
+        for ms in 1 - EARLY as i32..=1500 {
+            if ms == 751 {
+                (ahead, ramp) = made(n);
+                ramp.speed = speed;
+                ahead.restart(&mut state);
+                ahead.plan_all(&mut state, |t| ramp.command(t));
+            }
+            let command = ramp.command(ahead.time(&state, horizon + 1));
+            assert!(ahead.plan(&mut state, horizon, command));
+            let said = ahead.step(&mut state);
+            if ms > 750 && said.lead < 0.0 {
+                (lag, behind) = (lag.max(-said.lead), behind.max(ms - 750));
+            }
+        }
+    }
+    println!("restarted on the way: at most {:.1} ms behind, ahead after {behind} ms", 1e3 * lag);
+    assert!(lag > 0.0 && lag <= 0.0255 && behind <= 161, "{lag} {behind}");
 }
