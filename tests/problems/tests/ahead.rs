@@ -239,8 +239,9 @@ fn the_guide_has_the_leads_of_its_example() {
     assert_eq!((least, [1, least, 70, 120, 270].map(lead)), (63, [69.0, 36.0, 42.0, 72.0, 199.0]));
 }
 
-/// A stroke at n = 2.5 and 100 mm/s that continues as another unit or with another command from 0.75 s on: the greatest lag, and how long
-/// it takes until the prediction is ahead again.
+/// A stroke at n = 2.5 and 100 mm/s that continues as another unit or with another command from some time between 0.7 and 0.8 s
+/// on: the greatest lag, and
+/// how long it takes until the prediction is ahead again.
 #[test]
 fn a_restarted_stroke_catches_up() {
     let made = |n: f64| -> (_, Drive<f32>) {
@@ -249,12 +250,13 @@ fn a_restarted_stroke_catches_up() {
         (Ahead::new(driven, LIMITS).expect("the limits are in bounds"), *slide.drive())
     };
     let (mut lag, mut behind) = (0.0f32, 0);
-    for (n, speed) in [(2.5, 0.1f32), (2.5, 0.05), (2.25, 0.1), (2.25, 0.05)] {
+    let units = [(2.5, 0.1f32), (2.5, 0.05), (2.25, 0.1), (2.25, 0.05)];
+    for (start, (n, speed)) in (700..=800).step_by(5).flat_map(|start| units.map(|unit| (start, unit))) {
         let (mut ahead, mut ramp) = made(2.5);
         let mut state: State<f32, _, 6, KEPT> = ahead.at_rest(Pose::nominal(), EARLY, |t| ramp.command(t));
         let horizon = ahead.horizon(&state);
         for ms in 1 - EARLY as i32..=1500 {
-            if ms == 751 {
+            if ms == start + 1 {
                 (ahead, ramp) = made(n);
                 ramp.speed = speed;
                 ahead.restart(&mut state);
@@ -263,11 +265,11 @@ fn a_restarted_stroke_catches_up() {
             let command = ramp.command(ahead.time(&state, horizon + 1));
             assert!(ahead.plan(&mut state, horizon, command));
             let said = ahead.step(&mut state);
-            if ms > 750 && said.lead < 0.0 {
-                (lag, behind) = (lag.max(-said.lead), behind.max(ms - 750));
+            if ms > start && said.lead < 0.0 {
+                (lag, behind) = (lag.max(-said.lead), behind.max(ms - start));
             }
         }
     }
     println!("restarted on the way: at most {:.1} ms behind, ahead after {behind} ms", 1e3 * lag);
-    assert!(lag > 0.0 && lag <= 0.0255 && behind <= 161, "{lag} {behind}");
+    assert!(lag > 0.0 && lag <= 0.0395 && behind <= 230, "{lag} {behind}");
 }
