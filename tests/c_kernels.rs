@@ -82,7 +82,7 @@ int main(void) {
         NAME_driven found = NAME_DRIVE(&unit);
         hash = add(add(hash, found.effort), found.speed);
     }
-    /* From the start again by a command that is told. What is none is refused, and a copy is the unit as it was. */
+    /* From the start again with a command. Invalid ones are refused, and a copy restores the unit. */
     if (NAME_restart(&unit) != UPPER_OK || NAME_time(&unit) != 0.0f || NAME_COMMAND(&unit, 1e9f) != UPPER_OUT_OF_BOUNDS ||
         NAME_restart(NULL) != UPPER_NULL || NAME_COMMAND(misaligned, 0.0f) != UPPER_MISALIGNED ||
         NAME_restart(&memory) != UPPER_NOT_MADE || NAME_COMMAND(&memory, 0.0f) != UPPER_NOT_MADE) {
@@ -90,7 +90,7 @@ int main(void) {
     }
     for (int i = 0; i < STEPS; i++) {
         if (NAME_COMMAND(&unit, 0.001f * (float)(i % 64 - 16)) != UPPER_OK) {
-            put("not told\n");
+            put("no command\n");
         }
         if (i == STEPS / 2) {
             NAME_unit copy = unit;
@@ -121,13 +121,13 @@ struct Kernel {
     name: &'static str,
     /// Function of the drive, without the crate's name.
     drive: &'static str,
-    /// The function that tells it a command.
+    /// The function that sets its command.
     command: &'static str,
     steps: i32,
     expected: String,
 }
 
-/// What the program tells the drive before step `i`.
+/// The program's command before step `i`.
 fn command(i: i32) -> f32 {
     0.001 * (i % 64 - 16) as f32
 }
@@ -145,10 +145,10 @@ fn slide_of() -> Kernel {
     let mut kernel = slide::predictor(LEVEL).expect("the level is in bounds");
     let steps = 300;
     let mut seen = Vec::new();
-    for is_told in [false, true] {
+    for is_commanded in [false, true] {
         let mut state = kernel.at_rest(Pose::nominal());
         for i in 0..steps {
-            if is_told {
+            if is_commanded {
                 kernel.mechanism_mut().drive_mut().set_command(command(i));
             }
             let _ = kernel.step(&mut state);
@@ -163,10 +163,10 @@ macro_rules! of_mechanisms {
     ($($module:ident, $name:literal, $drive:ident, $command:ident, $steps:literal;)*) => {[$({
         let (mut kernel, _) = mechanisms::$module::predictor(LEVEL).expect("the level is in bounds");
         let mut seen = Vec::new();
-        for is_told in [false, true] {
+        for is_commanded in [false, true] {
             let mut state = mechanisms::$module::at_start(&kernel);
             for i in 0..$steps {
-                if is_told {
+                if is_commanded {
                     mechanisms::$module::$command(kernel.mechanism_mut(), command(i));
                 }
                 let _ = kernel.step(&mut state);

@@ -25,7 +25,7 @@ use slipfit::{
 };
 use slipfit_core::{
     ahead::{self, Ahead, Prediction},
-    drive::{Commandable as _, Led},
+    drive::{Commandable as _, SetpointDrive},
     integrator::ImplicitEuler,
     kernel::{Kernel, Report},
     monitor::{JamWatch, LevelBank, Limits, Monitor, Sample, Verdict, Watch},
@@ -181,7 +181,7 @@ fn hashed_bytes(bytes: impl IntoIterator<Item = u8>) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
-/// What the C program tells a drive in so many periods.
+/// The C program's command in a period.
 fn command(period: u32) -> f32 {
     let x = 2.0 * (period % 800) as f32 / 800.0;
     let (sign, x) = if x < 1.0 { (0.08, x) } else { (-0.08, x - 1.0) };
@@ -195,7 +195,7 @@ fn ahead_of_the_clock() -> (u64, u64) {
     let slower = SceneData { drive_speed: 0.05, ..scene };
     let unit = |scene: &SceneData<f32>, n| {
         let slide: CdRomSlide<f32> = cd_rom::from_data(&scene.at(n).expect("the deviations are in bounds"));
-        let led = slide.driven_by(Led::led(slide.drive().gain)).expect("the gain is in bounds");
+        let led = slide.driven_by(SetpointDrive::new(slide.drive().gain)).expect("the gain is in bounds");
         (Ahead::new(led, limits).expect("the limits are in bounds"), *slide.drive())
     };
     let (mut ahead, mut ramp) = unit(&scene, 2.5);

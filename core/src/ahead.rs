@@ -9,8 +9,8 @@
 //! behind by a given lag nevertheless, steps are forced: of linearly implicit Euler, over a period, whatever their error. So the lag
 //! is bounded too.
 //!
-//! The command is told once a period, up to a horizon before which no step ends: what is known in advance by [`Ahead::plan`], what is
-//! not by [`Ahead::follow`], which extrapolates. So the clock may run for ever, and the command may be any.
+//! The command has one setpoint per period, up to a horizon beyond the last step: set in advance by [`Ahead::plan`], or extrapolated by
+//! [`Ahead::follow`]. Steps use times relative to their start, so that the clock may run forever.
 //!
 //! Time is counted in ticks of 2⁻²⁰ periods, so that neither a lead nor a step is ever rounded.
 
@@ -33,7 +33,7 @@ use crate::{
 };
 
 use self::{
-    follow::Told,
+    follow::History,
     ring::{Knot, Ring, signed},
     setpoints::{Setpoints, TICKS, whole},
 };
@@ -69,11 +69,11 @@ pub struct State<S, P, const D: usize, const N: usize> {
     ring: Ring<S, P, D, N>,
     /// The command, from the greatest lag before the present instant to a period beyond the horizon.
     setpoints: Setpoints<S, N>,
-    /// What was told of a command that is not known in advance.
-    told: Told<S>,
+    /// Of a command that is not known in advance.
+    history: History<S>,
     /// See [`Prediction::deviation`].
     deviation: S,
-    /// 1 where no setpoint that is to come has been reckoned with, else 0.
+    /// 1 at rest and after a restart, until a setpoint is set or a step is made; else 0.
     is_open: S,
     /// What an attempt works on, here so that the stack need not hold it.
     sums: Sums<S, D>,
@@ -175,7 +175,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
     }
 
     /// At rest in `pose` until time 0, `early` periods before which the clock starts: [`MOST_EARLY`] at most, more count as so many. The
-    /// `command` (m/s) by time (s) is asked for each period up to the horizon; beyond it stays what it is there, until it is told.
+    /// `command` (m/s) as a function of time (s) gives the setpoints up to the horizon; beyond, the last one holds until others are set.
     pub fn at_rest<const D: usize, const N: usize>(
         &self,
         pose: M::Pose,
@@ -187,7 +187,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
     {
         let zero = S::zero();
         let (ring, sums) = (Ring::new(pose), [Part::zero(); 2]);
-        let (setpoints, told) = (Setpoints::new(), Told::new());
+        let (setpoints, history) = (Setpoints::new(), History::new());
         let mut state = State {
             periods: 0,
             early: 0,
@@ -195,7 +195,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
             length: zero,
             ring,
             setpoints,
-            told,
+            history,
             deviation: zero,
             is_open: zero,
             sums,
@@ -226,13 +226,13 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
             let time = self.time(state, periods);
             state.setpoints.set(periods.cast_signed(), command(time));
         }
-        (state.told, state.deviation, state.is_open) = (Told::new(), S::zero(), S::one());
+        (state.history, state.deviation, state.is_open) = (History::new(), S::zero(), S::one());
         state.sums = [Part::zero(); 2];
         (state.forced, state.excess) = (0, S::zero());
     }
 
-    /// The time (s) that it will be after so many more `periods`; 0 when the mechanism is released. In f32 it goes on in treads after 2²⁴
-    /// periods, 4.7 h at 1 kHz: no step goes by it, but a command by time should then be told by a count of the caller's own.
+    /// The time (s) after so many more `periods`; 0 when the mechanism is released. In f32 it is rounded to 2, 4 and more periods after 2²⁴
+    /// of them, 4.7 h at 1 kHz. Steps do not use it, but a command that depends on it should then count periods itself.
     #[inline(always)]
     pub fn time<P, const D: usize, const N: usize>(&self, state: &State<S, P, D, N>, periods: u32) -> S {
         let periods = S::from_count(state.periods.saturating_add(periods));
@@ -363,8 +363,8 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
 
     /// Goes on from the motion at the present instant: for when the command has changed that was planned, or the unit, and with it the
     /// prediction that is called, of the same period, lead and lag. Where the prediction is behind, it goes on from the last motion known;
-    /// before time 0 the mechanism stays at rest until then. The command that was told stays, until another is [planned](Self::plan) or
-    /// [followed](Self::follow), which is what a restart is for.
+    /// before time 0 the mechanism stays at rest until then. The setpoints stay until others are [planned](Self::plan) or
+    /// [followed](Self::follow).
     pub fn restart<const D: usize, const N: usize>(&self, state: &mut State<S, M::Pose, D, N>)
     where
         M: Driven<S, D>,
@@ -382,7 +382,7 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         }
         state.length = S::from_f64(FIRST);
         state.is_open = S::one();
-        state.told.forget();
+        state.history.clear();
     }
 }
 

@@ -1,6 +1,6 @@
 //! What an integrator sees of a scene: generalised velocities, momenta, forces, iteration matrices and Jacobians.
 
-use crate::{SVector, Scalar, drive::Led, law::friction::SlidingContact};
+use crate::{SVector, Scalar, drive::SetpointDrive, law::friction::SlidingContact};
 
 /// How forces are to be linearised.
 #[derive(Clone, Copy, Debug)]
@@ -220,10 +220,10 @@ pub trait Mechanism<S: Scalar, const D: usize> {
 /// A mechanism that a drive pushes by setpoints, and whose laws have no internal variables.
 pub trait Driven<S: Scalar, const D: usize>: Mechanism<S, D> {
     /// The drive.
-    fn drive(&self) -> &Led<S>;
+    fn drive(&self) -> &SetpointDrive<S>;
 
     /// The drive, to be given the command of the next step.
-    fn drive_mut(&mut self) -> &mut Led<S>;
+    fn drive_mut(&mut self) -> &mut SetpointDrive<S>;
 
     /// The mass (kg) that the drive pushes.
     fn mass(&self) -> S;

@@ -12,7 +12,7 @@ mod energy;
 
 use crate::{
     ParameterError, SVector, Scalar, Vector3,
-    drive::{Drive, Led, Push},
+    drive::{Drive, Push, SetpointDrive},
     error::bounded,
     law::{ClearanceFit, Elastic, Fit, Friction, Impact},
     mechanism::Driven,
@@ -173,15 +173,15 @@ pub fn to_walls<S: Scalar>([left, right, rail, wall]: [S; 4], d: &Vector3<S>) ->
 }
 
 impl<S: Scalar, E: Elastic<S>, F: Friction<S, Internal = ()>, G: Fit<Number = S>> Driven<S, 6>
-    for Slide<S, E, F, G, Led<S>>
+    for Slide<S, E, F, G, SetpointDrive<S>>
 {
     #[inline(always)]
-    fn drive(&self) -> &Led<S> {
+    fn drive(&self) -> &SetpointDrive<S> {
         &self.elements().1.law.0
     }
 
     #[inline(always)]
-    fn drive_mut(&mut self) -> &mut Led<S> {
+    fn drive_mut(&mut self) -> &mut SetpointDrive<S> {
         &mut self.elements_mut().1.law.0
     }
 

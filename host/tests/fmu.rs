@@ -74,7 +74,7 @@ fn slide_rows(folder: &Path, settings: &[&str], set: &Value, first: &Value) -> V
 }
 
 /// A command of 20,000 periods, arcs of parabolas there and back, and what the kernel of level `n` makes of it.
-fn told(n: f32) -> Value {
+fn commanded(n: f32) -> Value {
     use slipfit::{firmware::kernel_source::scene_data, scene::CD_ROM_SLIDE, setup::Scene};
     use slipfit_core::{drive::Commandable as _, integrator::ImplicitEuler, kernel::Kernel, pose::Pose};
     let scene = Scene::parse("cd-rom-slide.toml", CD_ROM_SLIDE, &[]).unwrap();
@@ -118,7 +118,7 @@ fn a_slide_has_the_controllers_bits() {
     let tight = ["--n", "2.5"];
     let first = json!({ "distance.left back left": 6.4e-6 - 2.5 * 4.04e-5, "distance.right front wall": 5.778e-4 - 2.5 * 5.79e-5 });
     let mut expected = slide_rows(folder.path(), &tight, &json!({ "n": 2.5 }), &first);
-    expected["told"] = told(2.5);
+    expected["commanded"] = commanded(2.5);
     check(&unit, &expected);
     // What a scene may say the importer may say too. A force at the centre of mass is as much more gravity.
     let scene = [

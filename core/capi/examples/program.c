@@ -11,7 +11,7 @@ void put(const char *text);
 #define STROKE 1500u
 /* Periods from the clock's start to the release of the unit that is predicted ahead. */
 #define EARLY 70u
-/* Periods of the command that is told to the predictor. */
+/* Periods of the predictor's command. */
 #define COMMANDED 20000u
 
 static slipfit_predictor predictor;
@@ -61,7 +61,7 @@ static void predict(void) {
     put_hex("failed", failed);
 }
 
-/* What a drive is told in so many periods: arcs of parabolas there and back, which are the same bits everywhere. */
+/* The command of a period: arcs of parabolas there and back, with the same bits everywhere. */
 static float command(uint32_t period) {
     float x = 2.0f * (float)(period % 800u) / 800.0f;
     const float sign = x < 1.0f ? 0.08f : -0.08f;
@@ -69,7 +69,7 @@ static float command(uint32_t period) {
     return sign * 4.0f * x * (1.0f - x);
 }
 
-/* Any command, told once a period; the predictor is saved and restored on the way, and a second motion starts from rest. */
+/* Any command, set once a period; the predictor is saved and restored on the way, and a second motion starts from rest. */
 static void follow_command(void) {
     static slipfit_predictor saved;
     uint64_t hash = EMPTY;
@@ -91,8 +91,8 @@ static void follow_command(void) {
     put_hex("failed", failed);
 }
 
-/* Ahead of the clock, through a change of the command and of what is known of the unit; then a command that is planned, then one that is
- * told as it comes. */
+/* Ahead of the clock, through a change of the command and of what is known of the unit; then a planned command, then a followed
+ * one. */
 static void predict_ahead(void) {
     const slipfit_ahead_limits limits = {.period = 1e-3f, .tolerance = 7e-5f, .lead = 0.2f, .lag = 0.2f, .attempts = 1u};
     slipfit_scene slower = slipfit_this_scene;

@@ -160,8 +160,8 @@ typedef struct slipfit_ahead_prediction {
   float velocity;
   // How far the slide is along the drive (m), from where it was at rest.
   float position;
-  // Of a command that was followed: the commanded speed (m/s) less the one that was reckoned with when this instant was to come. 0
-  // where it had not been predicted yet, where the prediction is behind, and of other commands.
+  // Of a followed command: the commanded speed (m/s) minus the extrapolated one by which this instant was predicted. 0
+  // where it had not been predicted before, where the prediction is behind, and for other commands.
   float deviation;
   // How far beyond the clock the motion is known (s); negative where the prediction is behind.
   float lead;
@@ -569,7 +569,7 @@ slipfit_status slipfit_predictor_read(const struct slipfit_predictor *storage, s
 
 // Makes a prediction ahead of the clock in `*storage` for a unit of tolerance level `n` (-20 to 20) of `*scene`, at rest until its release at
 // time 0. Its clock starts `early` periods before, SLIPFIT_AHEAD_EARLY_MOST at most, in which it takes a lead. Its command is the
-// scene's ramp until another is told by slipfit_ahead_plan or slipfit_ahead_follow. The scene's scheme and step do not matter. Its
+// scene's ramp until slipfit_ahead_plan or slipfit_ahead_follow sets another. The scene's scheme and step do not matter. Its
 // friction must be regularised, also in a library that is built for exact friction: instead of that take a stick band of 10 to 30 µm/s,
 // or SLIPFIT_LAW is the answer.
 //
@@ -595,8 +595,8 @@ slipfit_status slipfit_ahead_rest(struct slipfit_ahead *storage,
 slipfit_status slipfit_ahead_horizon(const struct slipfit_ahead *storage, uint32_t *periods);
 
 // The commanded `speed` (m/s, within 1000 either way) so many `periods` after the end of the coming one, of a command that is known in
-// advance, in place of the scene's ramp. After slipfit_ahead_init, _rest and _restart plan 0 to the horizon in turn, then the horizon
-// once a period before each step. The first one that is told then holds up to the horizon, until the next are. SLIPFIT_PARAMETER beyond
+// advance, in place of the scene's ramp. After slipfit_ahead_init, _rest and _restart plan all periods from 0 to the horizon, then the
+// horizon once a period before each step. The first one then holds up to the horizon, until the next ones are set. SLIPFIT_PARAMETER beyond
 // the horizon; SLIPFIT_LATE if the motion is already predicted for that instant: slipfit_ahead_restart takes that back.
 //
 // # Safety
@@ -606,8 +606,8 @@ slipfit_status slipfit_ahead_plan(struct slipfit_ahead *storage,
                                   float speed);
 
 // The commanded `speed` (m/s, within 1000 either way) at the end of the coming period, of a command that is not known in advance, in
-// place of the scene's ramp; once a period, before slipfit_ahead_step. A parabola through what it was in the last eight periods says what
-// it will be at the horizon; at first and after slipfit_ahead_restart it counts as constant, until eight periods are known.
+// place of the scene's ramp; once a period, before slipfit_ahead_step. It is extrapolated to the horizon by a parabola through the last eight
+// periods; at first and after slipfit_ahead_restart as constant, until eight periods are known.
 //
 // # Safety
 // As for slipfit_ahead_step.
@@ -638,8 +638,8 @@ slipfit_status slipfit_ahead_forecast(const struct slipfit_ahead *storage,
                                       float *force);
 
 // Goes on from the motion at the present instant as a unit of tolerance level `n` of `*scene`: for when the command or what is
-// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0; a command that was told stays
-// until it is told again, from the coming period on. Where the prediction is behind, it goes on from the last motion known. It keeps its limits, and
+// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0; a command that was set stays
+// until it is set again, from the coming period on. Where the prediction is behind, it goes on from the last motion known. It keeps its limits, and
 // if it is refused everything else too.
 //
 // # Safety
@@ -766,8 +766,8 @@ slipfit_status slipfit_scrubber_check(struct slipfit_scrubber *storage,
                                       uint32_t most,
                                       uint32_t *rounds);
 
-// Writes to `*seal` a number that goes by every bit of the `size` bytes at `object`, a multiple of four: that of an object of this library,
-// with its parameters and its state. Take it after the last call that changed the object, and compare it before the next use: one flipped
+// Writes to `*seal` a hash of the `size` bytes at `object`, a multiple of four, such as an object of this library with its parameters and
+// its state. Take it after the last call that changed the object, and compare it before the next use: one flipped
 // bit always changes it, and several do but by chance, once in four billion times.
 //
 // # Safety

@@ -2,7 +2,7 @@
 
 use slipfit_core::{
     ahead::{Ahead, Limits, MOST_ATTEMPTS, MOST_EARLY, Prediction, State},
-    drive::{Drive, Led, checked_command},
+    drive::{Drive, SetpointDrive, checked_command},
     law::{Regularised, ThreeHalves},
     menu::FrictionData,
     pose::Pose,
@@ -55,8 +55,8 @@ pub struct slipfit_ahead_prediction {
     pub velocity: f32,
     /// How far the slide is along the drive (m), from where it was at rest.
     pub position: f32,
-    /// Of a command that was followed: the commanded speed (m/s) less the one that was reckoned with when this instant was to come. 0
-    /// where it had not been predicted yet, where the prediction is behind, and of other commands.
+    /// Of a followed command: the commanded speed (m/s) minus the extrapolated one by which this instant was predicted. 0
+    /// where it had not been predicted before, where the prediction is behind, and for other commands.
     pub deviation: f32,
     /// How far beyond the clock the motion is known (s); negative where the prediction is behind.
     pub lead: f32,
@@ -75,16 +75,16 @@ pub struct slipfit_ahead {
     words: [u32; 4231],
 }
 
-type LedUnit = Slide<f32, ThreeHalves<f32>, Regularised<f32>, [f32; 4], Led<f32>>;
+type SetpointUnit = Slide<f32, ThreeHalves<f32>, Regularised<f32>, [f32; 4], SetpointDrive<f32>>;
 
 pub(crate) struct Predicted {
-    ahead: Ahead<f32, LedUnit>,
+    ahead: Ahead<f32, SetpointUnit>,
     state: State<f32, Pose<f32>, 6, KEPT>,
     said: Prediction<f32>,
     /// The scene's command.
     ramp: Drive<f32>,
-    /// 1 where the command was told, and is not the scene's.
-    is_told: u32,
+    /// 1 where the caller has set the command, 0 where it is the scene's ramp.
+    is_commanded: u32,
 }
 
 // SAFETY: plain words.
@@ -102,7 +102,7 @@ const _: () = assert!(size_of::<slipfit_ahead>() == size_of::<Made<Predicted>>()
 /// Makes `ahead` that of a unit, and `ramp` its scene's command. One copy in the code serves init and restart; in place, for less stack.
 #[inline(never)]
 fn put(
-    (ahead, ramp): (&mut Ahead<f32, LedUnit>, &mut Drive<f32>),
+    (ahead, ramp): (&mut Ahead<f32, SetpointUnit>, &mut Drive<f32>),
     scene: &slipfit_scene,
     n: f32,
     limits: Limits<f32>,
@@ -111,7 +111,7 @@ fn put(
         FrictionData::Regularised { coefficient, stick_band } => Ok(Regularised::new(coefficient, stick_band)?),
         _ => Err(Refusal(SLIPFIT_LAW)),
     })?;
-    *ahead = Ahead::new(slide.driven_by(Led::led(slide.drive().gain))?, limits)?;
+    *ahead = Ahead::new(slide.driven_by(SetpointDrive::new(slide.drive().gain))?, limits)?;
     *ramp = *slide.drive();
     Ok(())
 }
@@ -124,8 +124,8 @@ impl Predicted {
 
     /// One period.
     fn advance(&mut self) {
-        let Self { ahead, state, said, ramp, is_told } = self;
-        if *is_told == 0 {
+        let Self { ahead, state, said, ramp, is_commanded } = self;
+        if *is_commanded == 0 {
             let horizon = ahead.horizon(state);
             let speed = ramp.command(ahead.time(state, horizon + 1));
             ahead.plan(state, horizon, speed);
@@ -139,7 +139,7 @@ impl Predicted {
         if early > SLIPFIT_AHEAD_EARLY_MOST {
             return Err(Refusal(SLIPFIT_PARAMETER));
         }
-        let Self { ahead, state, said, ramp, is_told } = self;
+        let Self { ahead, state, said, ramp, is_commanded } = self;
         ahead.put_at_rest(state, Pose::nominal(), early, |time| ramp.command(time));
         let Limits { period, tolerance, .. } = *ahead.limits();
         let lead = early as f32 * period;
@@ -154,14 +154,14 @@ impl Predicted {
             excess: 0.0,
             forced: 0,
         };
-        *is_told = 0;
+        *is_commanded = 0;
         Ok(())
     }
 }
 
 /// Makes a prediction ahead of the clock in `*storage` for a unit of tolerance level `n` (-20 to 20) of `*scene`, at rest until its release at
 /// time 0. Its clock starts `early` periods before, SLIPFIT_AHEAD_EARLY_MOST at most, in which it takes a lead. Its command is the
-/// scene's ramp until another is told by slipfit_ahead_plan or slipfit_ahead_follow. The scene's scheme and step do not matter. Its
+/// scene's ramp until slipfit_ahead_plan or slipfit_ahead_follow sets another. The scene's scheme and step do not matter. Its
 /// friction must be regularised, also in a library that is built for exact friction: instead of that take a stick band of 10 to 30 µm/s,
 /// or SLIPFIT_LAW is the answer.
 ///
@@ -212,8 +212,8 @@ pub unsafe extern "C" fn slipfit_ahead_horizon(storage: *const slipfit_ahead, pe
 }
 
 /// The commanded `speed` (m/s, within 1000 either way) so many `periods` after the end of the coming one, of a command that is known in
-/// advance, in place of the scene's ramp. After slipfit_ahead_init, _rest and _restart plan 0 to the horizon in turn, then the horizon
-/// once a period before each step. The first one that is told then holds up to the horizon, until the next are. SLIPFIT_PARAMETER beyond
+/// advance, in place of the scene's ramp. After slipfit_ahead_init, _rest and _restart plan all periods from 0 to the horizon, then the
+/// horizon once a period before each step. The first one then holds up to the horizon, until the next ones are set. SLIPFIT_PARAMETER beyond
 /// the horizon; SLIPFIT_LATE if the motion is already predicted for that instant: slipfit_ahead_restart takes that back.
 ///
 /// # Safety
@@ -222,7 +222,7 @@ pub unsafe extern "C" fn slipfit_ahead_horizon(storage: *const slipfit_ahead, pe
 pub unsafe extern "C" fn slipfit_ahead_plan(storage: *mut slipfit_ahead, periods: u32, speed: f32) -> slipfit_status {
     status(|| {
         // SAFETY: the caller's promise.
-        let Predicted { ahead, state, is_told, .. } = unsafe { object_mut(storage)? };
+        let Predicted { ahead, state, is_commanded, .. } = unsafe { object_mut(storage)? };
         let speed = checked_command(speed)?;
         if periods > ahead.horizon(state) {
             return Err(Refusal(SLIPFIT_PARAMETER));
@@ -230,14 +230,14 @@ pub unsafe extern "C" fn slipfit_ahead_plan(storage: *mut slipfit_ahead, periods
         if !ahead.plan(state, periods, speed) {
             return Err(Refusal(SLIPFIT_LATE));
         }
-        *is_told = 1;
+        *is_commanded = 1;
         Ok(())
     })
 }
 
 /// The commanded `speed` (m/s, within 1000 either way) at the end of the coming period, of a command that is not known in advance, in
-/// place of the scene's ramp; once a period, before slipfit_ahead_step. A parabola through what it was in the last eight periods says what
-/// it will be at the horizon; at first and after slipfit_ahead_restart it counts as constant, until eight periods are known.
+/// place of the scene's ramp; once a period, before slipfit_ahead_step. It is extrapolated to the horizon by a parabola through the last eight
+/// periods; at first and after slipfit_ahead_restart as constant, until eight periods are known.
 ///
 /// # Safety
 /// As for slipfit_ahead_step.
@@ -245,9 +245,9 @@ pub unsafe extern "C" fn slipfit_ahead_plan(storage: *mut slipfit_ahead, periods
 pub unsafe extern "C" fn slipfit_ahead_follow(storage: *mut slipfit_ahead, speed: f32) -> slipfit_status {
     status(|| {
         // SAFETY: the caller's promise.
-        let Predicted { ahead, state, is_told, .. } = unsafe { object_mut(storage)? };
+        let Predicted { ahead, state, is_commanded, .. } = unsafe { object_mut(storage)? };
         ahead.follow(state, checked_command(speed)?);
-        *is_told = 1;
+        *is_commanded = 1;
         Ok(())
     })
 }
@@ -309,8 +309,8 @@ pub unsafe extern "C" fn slipfit_ahead_forecast(
 }
 
 /// Goes on from the motion at the present instant as a unit of tolerance level `n` of `*scene`: for when the command or what is
-/// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0; a command that was told stays
-/// until it is told again, from the coming period on. Where the prediction is behind, it goes on from the last motion known. It keeps its limits, and
+/// known of the unit changes. The clock runs on, and the scene's ramp counts from the same time 0; a command that was set stays
+/// until it is set again, from the coming period on. Where the prediction is behind, it goes on from the last motion known. It keeps its limits, and
 /// if it is refused everything else too.
 ///
 /// # Safety
@@ -324,11 +324,11 @@ pub unsafe extern "C" fn slipfit_ahead_restart(
     status(|| {
         // SAFETY: the caller's promise.
         let (predicted, scene) = unsafe { (object_mut(storage)?, input(scene)?) };
-        let Predicted { ahead, state, ramp, is_told, .. } = predicted;
+        let Predicted { ahead, state, ramp, is_commanded, .. } = predicted;
         let limits = *ahead.limits();
         put((ahead, ramp), scene, n, limits)?;
         ahead.restart(state);
-        if *is_told == 0 {
+        if *is_commanded == 0 {
             ahead.plan_all(state, |time| ramp.command(time));
         }
         Ok(())

@@ -7,8 +7,8 @@ use crate::{
     status::{slipfit_status, status},
 };
 
-/// Writes to `*seal` a number that goes by every bit of the `size` bytes at `object`, a multiple of four: that of an object of this library,
-/// with its parameters and its state. Take it after the last call that changed the object, and compare it before the next use: one flipped
+/// Writes to `*seal` a hash of the `size` bytes at `object`, a multiple of four, such as an object of this library with its parameters and
+/// its state. Take it after the last call that changed the object, and compare it before the next use: one flipped
 /// bit always changes it, and several do but by chance, once in four billion times.
 ///
 /// # Safety

@@ -1,4 +1,4 @@
-//! A command that is not known in advance: what it was says what it will be, for a while.
+//! A command that is not known in advance, extrapolated from its last setpoints.
 
 use crate::Scalar;
 
@@ -6,18 +6,18 @@ use crate::Scalar;
 /// last digits of a setpoint.
 const SPAN: usize = 4;
 
-/// What was told of a command.
+/// The last setpoints of a command.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Told<S> {
+pub(super) struct History<S> {
     /// The last setpoints (m/s), the newest first.
     speeds: [S; 2 * SPAN + 1],
-    /// How far (m/s times periods) the motion has strayed, since the command was another one than was reckoned with.
-    strayed: S,
-    /// Setpoints since the last ones were forgotten, as far as they count.
+    /// Sum of all deviations (m/s times periods): position error of the prediction over the period.
+    position_error: S,
+    /// Setpoints since the history was cleared, up to as many as the parabola needs.
     count: S,
 }
 
-/// The parabola through three of the setpoints told.
+/// The parabola through three of the setpoints.
 #[derive(Clone, Copy)]
 pub(super) struct Parabola<S> {
     newest: S,
@@ -25,36 +25,36 @@ pub(super) struct Parabola<S> {
     second: S,
 }
 
-impl<S: Scalar> Told<S> {
-    /// Nothing.
+impl<S: Scalar> History<S> {
+    /// Empty.
     pub fn new() -> Self {
-        Self { speeds: [S::zero(); 2 * SPAN + 1], strayed: S::zero(), count: S::zero() }
+        Self { speeds: [S::zero(); 2 * SPAN + 1], position_error: S::zero(), count: S::zero() }
     }
 
-    /// Forgets the setpoints: until there are enough new ones the command counts as constant.
+    /// Drops the setpoints: the command is extrapolated as constant until there are enough new ones.
     #[inline(always)]
-    pub fn forget(&mut self) {
+    pub fn clear(&mut self) {
         self.count = S::zero();
     }
 
-    /// Takes in the newest setpoint `speed` (m/s). Where the motion was predicted by another one, of which it is the `deviation` (m/s),
-    /// that is made up for over four times the `horizon` (periods): a mechanism whose force goes by its place would else drift. What is
-    /// not finite counts as what was before, and as no deviation.
+    /// Adds the newest setpoint `speed` (m/s). Its `deviation` (m/s) from the setpoint by which the motion was predicted is summed up and
+    /// fed back with a time constant of four times the `horizon` (periods), because the position would drift otherwise. A speed that is
+    /// not finite repeats the last one, such a deviation counts as zero.
     #[inline(always)]
-    pub fn tell(&mut self, speed: S, deviation: S, horizon: S) -> Parabola<S> {
+    pub fn update(&mut self, speed: S, deviation: S, horizon: S) -> Parabola<S> {
         let (zero, one) = (S::zero(), S::one());
         let speed = speed.or_old(one, self.speeds[0]);
         let mut newer = speed;
-        for told in &mut self.speeds {
-            newer = core::mem::replace(told, newer);
+        for older in &mut self.speeds {
+            newer = core::mem::replace(older, newer);
         }
         self.count = (self.count + one).at_most(S::from_f64(2.0 * SPAN as f64 + 1.0));
-        self.strayed += deviation.or_old(one, zero);
+        self.position_error += deviation.or_old(one, zero);
         let (newest, middle, oldest) = (self.speeds[0], self.speeds[SPAN], self.speeds[2 * SPAN]);
         let known = self.count.select_gt(S::from_f64(2.0 * SPAN as f64), one, zero);
         let first = (newest - middle) * known;
         let second = (first - (middle - oldest) * known) * S::from_f64(0.5);
-        Parabola { newest: newest + self.strayed / (horizon * S::from_f64(4.0)), first, second }
+        Parabola { newest: newest + self.position_error / (horizon * S::from_f64(4.0)), first, second }
     }
 }
 
@@ -69,19 +69,19 @@ impl<S: Scalar> Parabola<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Parabola, SPAN, Told};
+    use super::{History, Parabola, SPAN};
 
     #[test]
     fn a_parabola_is_extrapolated_exactly() {
         let y = |k: f64| 0.1 + 0.02 * k - 0.003 * k * k;
-        let mut told = Told::new();
+        let mut history = History::new();
         let mut last = None;
-        told.tell(77.0, 0.0, 20.0);
-        told.forget();
+        history.update(77.0, 0.0, 20.0);
+        history.clear();
         for k in 0..=2 * SPAN {
             // Constant until enough is known.
             assert!(last.is_none_or(|last: Parabola<f64>| last.after(20.0) == y(k as f64 - 1.0)), "{k}");
-            last = Some(told.tell(y(k as f64), 0.0, 20.0));
+            last = Some(history.update(y(k as f64), 0.0, 20.0));
         }
         for after in [0.0, 1.0, 5.0, 20.0] {
             let found = last.unwrap().after(after);
@@ -91,32 +91,32 @@ mod tests {
 
     #[test]
     fn what_is_not_finite_says_nothing() {
-        let mut told = Told::new();
+        let mut history = History::new();
         for _ in 0..20 {
-            told.tell(0.1, 0.0, 20.0);
+            history.update(0.1, 0.0, 20.0);
         }
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            assert_eq!(told.tell(bad, bad, 20.0).after(20.0), 0.1);
+            assert_eq!(history.update(bad, bad, 20.0).after(20.0), 0.1);
         }
     }
 
-    /// With the delay of a horizon, what was strayed goes to zero, and does not swing.
+    /// Despite the delay of a horizon, the position error decays to zero without oscillation.
     #[test]
-    fn what_has_strayed_is_made_up_for() {
+    fn position_errors_decay() {
         for horizon in [4, 20, 200] {
-            let mut told = Told::new();
-            // What was reckoned with, until the horizon.
-            let mut reckoned = [0.0; 200];
-            let mut strayed = 0.0f64;
+            let mut history = History::new();
+            // Setpoints by which the motion is predicted, up to the horizon.
+            let mut assumed = [0.0; 200];
+            let mut position_error = 0.0f64;
             for period in 0..horizon * 40 {
-                let deviation = if period == 0 { 0.1 } else { 0.0 } - reckoned[0];
-                strayed += deviation;
-                let parabola = told.tell(0.0, deviation, horizon as f64);
-                reckoned.copy_within(1.., 0);
-                reckoned[horizon - 1] = parabola.after(0.0);
-                assert!(strayed > -0.01, "{horizon} {period}: {strayed}");
+                let deviation = if period == 0 { 0.1 } else { 0.0 } - assumed[0];
+                position_error += deviation;
+                let parabola = history.update(0.0, deviation, horizon as f64);
+                assumed.copy_within(1.., 0);
+                assumed[horizon - 1] = parabola.after(0.0);
+                assert!(position_error > -0.01, "{horizon} {period}: {position_error}");
             }
-            assert!(libm::fabs(strayed) < 1e-3, "{horizon}: {strayed}");
+            assert!(libm::fabs(position_error) < 1e-3, "{horizon}: {position_error}");
         }
     }
 }

@@ -34,9 +34,9 @@ pub struct Prediction<S> {
     pub position: S,
     /// Force of the drive (N).
     pub force: S,
-    /// The commanded speed (m/s) less the one that was reckoned with for this instant, when it was the future. 0 of a command that was
-    /// planned, where the prediction is behind, and where the instant had not been predicted yet. The real speed differs by about as
-    /// much, the force by what friction and inertia make of it.
+    /// Of a followed command: the commanded speed (m/s) minus the extrapolated one by which this instant was predicted. 0 for planned
+    /// commands, where the prediction is behind, and where the instant had not been predicted before. The real speed differs by about as
+    /// much.
     pub deviation: S,
     /// How far beyond the clock the motion is known (s); negative where the prediction is behind.
     pub lead: S,

@@ -2,7 +2,7 @@
 
 use crate::{
     Scalar,
-    drive::{Piece, between},
+    drive::{Piece, catmull_rom},
 };
 
 /// Ticks of a period.
@@ -72,7 +72,7 @@ impl<S: Scalar, const N: usize> Setpoints<S, N> {
             let [before, from, to] = last;
             let after = self.at(first.wrapping_add(piece.wrapping_add(2).cast_signed()));
             last = [from, to, after];
-            between([before, from, to, after], (S::from_count(piece) - into) * period, rate)
+            catmull_rom([before, from, to, after], (S::from_count(piece) - into) * period, rate)
         })
     }
 

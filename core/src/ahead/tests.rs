@@ -1,11 +1,11 @@
 use super::{Ahead, Limits, State, Status};
 use crate::{
-    drive::Led,
+    drive::SetpointDrive,
     law::{Impact, Pad, ThreeHalves},
     system::{AxisBody, on_axis},
 };
 
-type Driven = AxisBody<f64, ThreeHalves<f64>, Pad<f64>, Led<f64>>;
+type Driven = AxisBody<f64, ThreeHalves<f64>, Pad<f64>, SetpointDrive<f64>>;
 
 const LIMITS: Limits<f64> = Limits { period: 1e-3, tolerance: 1e-4, lead: 0.05, lag: 0.1, attempts: 1 };
 
@@ -17,7 +17,7 @@ const GAIN: f64 = 2.0;
 /// A body that is driven away from its pad.
 fn body() -> Driven {
     let contact = Impact::new(ThreeHalves::new(3e6).unwrap(), 1000.0, 1e-4).unwrap();
-    on_axis(MASS, 0.0, Pad::new(1e-3).unwrap(), contact, Led::led(GAIN)).unwrap()
+    on_axis(MASS, 0.0, Pad::new(1e-3).unwrap(), contact, SetpointDrive::new(GAIN)).unwrap()
 }
 
 fn ahead() -> Ahead<f64, Driven> {
@@ -84,9 +84,9 @@ fn a_planned_command_is_followed_to_its_closed_form() {
     assert!(ahead.plan(&mut state, 0, 0.0));
 }
 
-/// A command that is told as it comes: the body lags behind it, so that a wrong guess of the future changes its motion little.
+/// A followed command: the body lags behind it, so that a wrong extrapolation changes its motion little.
 #[test]
-fn a_command_that_is_told_as_it_comes_is_followed_nearly() {
+fn an_unknown_command_is_followed_nearly() {
     let (omega, x) = (10.0, 10.0 * MASS / GAIN);
     for (lead, most) in [(0.02, 0.01), (0.05, 0.06)] {
         let mut ahead = Ahead::new(body(), Limits { lead, ..LIMITS }).unwrap();
@@ -94,8 +94,8 @@ fn a_command_that_is_told_as_it_comes_is_followed_nearly() {
         let mut worst = 0.0f64;
         for period in 1..2000 {
             let t = f64::from(period) * 1e-3;
-            let told = 0.1 * libm::sin(omega * t);
-            ahead.follow(&mut state, told);
+            let commanded = 0.1 * libm::sin(omega * t);
+            ahead.follow(&mut state, commanded);
             let found = ahead.step(&mut state);
             let speed = 0.1 * (libm::sin(omega * t) - x * libm::cos(omega * t)) / (1.0 + x * x);
             if period > 500 {
@@ -142,18 +142,18 @@ fn a_plan_after_a_restart_is_the_whole_plan() {
     let mut last = f64::INFINITY;
     for _ in 0..400 {
         let said = ahead.step(&mut state);
-        let reckoned = said.force / GAIN + said.speed;
-        assert!(said.lead < 0.0 || libm::fabs(reckoned) < 1e-12, "{said:?}");
+        let assumed = said.force / GAIN + said.speed;
+        assert!(said.lead < 0.0 || libm::fabs(assumed) < 1e-12, "{said:?}");
         last = said.speed;
         assert!(ahead.plan(&mut state, horizon, 0.0));
     }
     assert!(libm::fabs(last) < 1e-4, "{last}");
 }
 
-/// Where a command is followed, every value that is current says by which command it was reckoned: force/gain + speed + deviation is
-/// what was told.
+/// Where a command is followed, every value that is current says by which command it was assumed: force/gain + speed + deviation is
+/// the command.
 #[test]
-fn what_is_followed_and_what_is_reckoned_differ_by_the_deviation() {
+fn what_is_followed_and_what_is_assumed_differ_by_the_deviation() {
     for (lead, attempts) in [(0.004, 1), (0.01, 1), (0.02, 2), (0.05, 4)] {
         let mut ahead = Ahead::new(body(), Limits { lead, attempts, ..LIMITS }).unwrap();
         let mut state: State<_, _, 1, 64> = ahead.at_rest(1.0, 3, |_| 0.0);
@@ -161,16 +161,16 @@ fn what_is_followed_and_what_is_reckoned_differ_by_the_deviation() {
         for period in 0..3000 {
             let t = f64::from(period) * 1e-3;
             // With corners, at which the lead is lost, and a restart on the way.
-            let told = 0.1 * libm::sin(9.0 * t) + if period % 700 > 350 { 0.05 } else { 0.0 };
+            let commanded = 0.1 * libm::sin(9.0 * t) + if period % 700 > 350 { 0.05 } else { 0.0 };
             if period == 1500 {
                 ahead.restart(&mut state);
             }
-            ahead.follow(&mut state, told);
+            ahead.follow(&mut state, commanded);
             let said = ahead.step(&mut state);
             if said.lead >= 0.0 && period > 3 {
                 current += 1;
-                let reckoned = said.force / GAIN + said.speed + said.deviation;
-                assert!(libm::fabs(reckoned - told) < 1e-9, "{lead} {period}: {reckoned} {told} {said:?}");
+                let assumed = said.force / GAIN + said.speed + said.deviation;
+                assert!(libm::fabs(assumed - commanded) < 1e-9, "{lead} {period}: {assumed} {commanded} {said:?}");
             }
         }
         assert!(current > 1000, "{lead}: {current}");
@@ -186,7 +186,7 @@ fn a_restart_before_the_release_does_not_bring_it_forward() {
         for period in 1..=140 {
             if period == at {
                 ahead.restart(&mut state);
-                // What is commanded before the release does not matter, and may be told.
+                // What is commanded before the release does not matter, and may be planned.
                 assert!(ahead.plan(&mut state, 0, 0.1));
             }
             let said = ahead.step(&mut state);

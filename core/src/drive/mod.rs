@@ -7,7 +7,8 @@ mod train;
 
 pub use command::{Command, Commanded, Piece, check_pieces};
 pub use ramp::{Drive, checked_command};
-pub use setpoints::{Led, between};
+pub use setpoints::SetpointDrive;
+pub(crate) use setpoints::catmull_rom;
 pub use train::{Train, TrainData};
 
 use crate::{ParameterError, Scalar};

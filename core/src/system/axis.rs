@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     ParameterError, SMatrix, SVector, Scalar,
-    drive::{Led, Push},
+    drive::{Push, SetpointDrive},
     error::bounded,
     law::{Elastic, Impact, Stop, stop::Resistance},
     mechanism::Driven,
@@ -63,12 +63,12 @@ impl<S: Scalar, E: Elastic<S>, C: Stop<S>, P: Push<S>> AxisBody<S, E, C, P> {
     }
 }
 
-impl<S: Scalar, E: Elastic<S>, C: Stop<S>> Driven<S, 1> for AxisBody<S, E, C, Led<S>> {
-    fn drive(&self) -> &Led<S> {
+impl<S: Scalar, E: Elastic<S>, C: Stop<S>> Driven<S, 1> for AxisBody<S, E, C, SetpointDrive<S>> {
+    fn drive(&self) -> &SetpointDrive<S> {
         &self.elements().1.law.0
     }
 
-    fn drive_mut(&mut self) -> &mut Led<S> {
+    fn drive_mut(&mut self) -> &mut SetpointDrive<S> {
         &mut self.elements_mut().1.law.0
     }
 

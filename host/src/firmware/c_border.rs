@@ -32,7 +32,7 @@ pub struct Border<'a> {
 pub struct Driven<'a> {
     /// Its function.
     pub function: String,
-    /// The function that tells it its command.
+    /// The function that sets its command.
     pub command: String,
     /// What people call it.
     pub name: &'a str,
@@ -40,8 +40,8 @@ pub struct Driven<'a> {
     pub kind: DriveKind,
     /// Its effort and speed, from `parameters` and `state`: an expression of Rust.
     pub found: String,
-    /// What tells it the commanded `speed`, of `parameters`: a statement of Rust.
-    pub told: String,
+    /// A statement of Rust that sets the commanded `speed` in `parameters`.
+    pub set_command: String,
 }
 
 /// What functions of C return, beside 0 for done: the pointer is null.
@@ -134,7 +134,7 @@ impl Border<'_> {
              // SAFETY: the caller's promise.\n    \
              unsafe {{ made(unit) }}.map_or(f32::NAN, |unit| unit.parameters.time(unit.state.steps))\n}}\n"
         );
-        for Driven { function, found, command, told, .. } in &self.drives {
+        for Driven { function, found, command, set_command, .. } in &self.drives {
             let _ = write!(
                 text,
                 "\n/// # Safety\n/// As the header says.\n#[unsafe(no_mangle)]\n\
@@ -144,7 +144,7 @@ impl Border<'_> {
                  let Ok(speed) = slipfit_core::drive::checked_command(speed) else {{ return {OUT_OF_BOUNDS} }};\n    \
                  // SAFETY: it was made, and the caller's promise that nobody else uses it meanwhile.\n    \
                  let Object {{ parameters, .. }} = unsafe {{ (*unit).object.assume_init_mut() }};\n    \
-                 {told};\n    0\n}}\n"
+                 {set_command};\n    0\n}}\n"
             );
             let _ = write!(
                 text,
@@ -207,7 +207,7 @@ impl Border<'_> {
              int32_t {prefix}_init({prefix}_unit *unit, float n);\n\n\
              /* Moves it by {upper}_STEP: the same instructions whatever its state. */\n\
              int32_t {prefix}_step({prefix}_unit *unit);\n\n\
-             /* Back to the start of the scene's run, at time 0; what its drives were told stays. */\n\
+             /* Back to the start of the scene's run, at time 0; commands that were set stay. */\n\
              int32_t {prefix}_restart({prefix}_unit *unit);\n\n\
              /* Its time (s); NAN where there is no unit, as of its drives below. */\n\
              float {prefix}_time(const {prefix}_unit *unit);\n",

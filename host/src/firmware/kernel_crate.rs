@@ -85,7 +85,7 @@ pub fn slide_crate(scene: &Scene, name: &str, core: Option<&Path>) -> CrateFiles
             name: "drive",
             kind: DriveKind::Pushes,
             found: found.into(),
-            told: "set_command(parameters, speed)".into(),
+            set_command: "set_command(parameters, speed)".into(),
         }],
         start: "predictor(n).map(|unit| { let state = at_rest(&unit); (unit, state) })",
         at_start: "at_rest(parameters)",
@@ -100,7 +100,7 @@ fn of_drive((function, drive): (String, &NamedDrive)) -> CDrive<'_> {
             "let found = {function}(parameters.mechanism(), parameters.time(state.steps), &state.motion.pose, \
              &state.motion.velocity);\n    Driven {{ effort: found.effort, speed: found.speed }}"
         ),
-        told: format!("{}(parameters.mechanism_mut(), speed)", command_name(&function)),
+        set_command: format!("{}(parameters.mechanism_mut(), speed)", command_name(&function)),
         command: command_name(&function),
         function,
         name: &drive.name,

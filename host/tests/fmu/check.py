@@ -2,7 +2,7 @@
 
 EXPECTED.json holds the kernel's step (s) as `step`, the values that are set as `set`, the values of outputs after every step as
 `rows`, with their names in `columns`, what outputs are about at the start as `first`, and settings that are `refused` after it;
-perhaps a command that is `told` before every step, as `name` and `speeds`, with the `rows` that it makes.
+perhaps a command that is set before every step as `commanded`, with `name` and `speeds`, with the `rows` that it makes.
 The unit must be valid, and have these bits whatever the communication steps, after
 its state was saved and restored, and after it was written down and read by another instance.
 """
@@ -130,17 +130,17 @@ def main(path, expected):
         (of.instance.freeFMUState if of.is_third else of.instance.freeFMUstate)(state)
     other.end()
 
-    if "told" in expected:
-        told, unit_told = expected["told"], Unit(folder, description).start(expected["set"])
-        for at, (speed, row) in enumerate(zip(told["speeds"], told["rows"])):
-            unit_told.set({told["name"]: speed})
+    if "commanded" in expected:
+        commanded, unit_commanded = expected["commanded"], Unit(folder, description).start(expected["set"])
+        for at, (speed, row) in enumerate(zip(commanded["speeds"], commanded["rows"])):
+            unit_commanded.set({commanded["name"]: speed})
             if at % 1000 == 500:
-                saved = unit_told.written(unit_told.save())
-                unit_told.step(at * step, step)
-                unit_told.restore(unit_told.read(saved))
-            unit_told.step(at * step, step)
-            assert bits(unit_told.get(columns)) == bits(row), (at, unit_told.get(columns), row)
-        unit_told.end()
+                saved = unit_commanded.written(unit_commanded.save())
+                unit_commanded.step(at * step, step)
+                unit_commanded.restore(unit_commanded.read(saved))
+            unit_commanded.step(at * step, step)
+            assert bits(unit_commanded.get(columns)) == bits(row), (at, unit_commanded.get(columns), row)
+        unit_commanded.end()
 
     # A reset instance is a new one.
     unit.instance.reset()

@@ -17,7 +17,7 @@ mod uses {
     use slipfit_core::{
         ParameterError,
         ahead::{Ahead, Limits, State},
-        drive::Led,
+        drive::SetpointDrive,
         law::{Impact, Regularised, ThreeHalves},
         pose::Pose,
         production::{self, Production, SAVED_SIZE, Unit},
@@ -74,7 +74,7 @@ mod uses {
         let contact = Impact::new(ThreeHalves::new(black_box(3e6))?, black_box(1e3), black_box(1e-4))?;
         let friction = Regularised::new(black_box(0.3), black_box(1e-4))?;
         let limits = black_box(Limits { period: 1e-3, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 2 });
-        let slide = data.body.slide(contact, friction, data.drive)?.driven_by(Led::led(data.drive.gain))?;
+        let slide = data.body.slide(contact, friction, data.drive)?.driven_by(SetpointDrive::new(data.drive.gain))?;
         let mut ahead = black_box(Ahead::new(slide, limits)?);
         let command = |t| data.drive.command(t);
         let mut state: State<f32, _, 6, 256> = black_box(ahead.at_rest(Pose::nominal(), black_box(70), command));

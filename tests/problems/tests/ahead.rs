@@ -10,7 +10,7 @@ use std::{fs, path::Path};
 use common::{TOLERANCE, converged, drawn};
 use slipfit_core::{
     ahead::{Ahead, Limits, Prediction, State, Status},
-    drive::{Drive, Led},
+    drive::{Drive, SetpointDrive},
     menu::{FrictionData, SlideData},
     pose::Pose,
 };
@@ -36,7 +36,7 @@ fn predicted(data: &SlideData<f64>, limits: Limits<f32>, periods: usize) -> Vec<
 fn predicted_from_the_start(data: &SlideData<f64>, limits: Limits<f32>, periods: usize) -> Vec<Prediction<f32>> {
     let slide: CdRomSlide<f32> = cd_rom::from_data(&data.cast(|x| x as f32));
     let ramp = *slide.drive();
-    let slide = slide.driven_by(Led::led(ramp.gain)).expect("the gain is in bounds");
+    let slide = slide.driven_by(SetpointDrive::new(ramp.gain)).expect("the gain is in bounds");
     let mut ahead = Ahead::new(slide, limits).expect("the limits are in bounds");
     let mut state: State<f32, _, 6, KEPT> = ahead.at_rest(Pose::nominal(), EARLY, |t| ramp.command(t));
     let horizon = ahead.horizon(&state);
@@ -246,7 +246,7 @@ fn the_guide_has_the_leads_of_its_example() {
 fn a_restarted_stroke_catches_up() {
     let made = |n: f64| -> (_, Drive<f32>) {
         let slide: CdRomSlide<f32> = cd_rom::from_data(&cd_rom::data(n).cast(|x| x as f32));
-        let driven = slide.driven_by(Led::led(slide.drive().gain)).expect("the gain is in bounds");
+        let driven = slide.driven_by(SetpointDrive::new(slide.drive().gain)).expect("the gain is in bounds");
         (Ahead::new(driven, LIMITS).expect("the limits are in bounds"), *slide.drive())
     };
     let (mut lag, mut behind) = (0.0f32, 0);

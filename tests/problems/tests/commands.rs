@@ -10,7 +10,7 @@ use common::{TOLERANCE, converged, drawn};
 use slipfit_core::{
     ParameterError, Scalar,
     ahead::{Ahead, Limits, State},
-    drive::{Command, Commandable as _, Commanded, Led, Piece},
+    drive::{Command, Commandable as _, Commanded, Piece, SetpointDrive},
     integrator::ImplicitEuler,
     kernel::Kernel,
     menu::SlideData,
@@ -84,13 +84,13 @@ fn units() -> Vec<(String, SlideData<f64>)> {
     levels.into_iter().chain((0..6).map(|index| (format!("unit {index}"), drawn(index)))).collect()
 }
 
-type Predicted = Ahead<f32, slipfit_core::slide::Slide<f32, Contact, Friction, [f32; 4], Led<f32>>>;
+type Predicted = Ahead<f32, slipfit_core::slide::Slide<f32, Contact, Friction, [f32; 4], SetpointDrive<f32>>>;
 type Contact = slipfit_core::law::ThreeHalves<f32>;
 type Friction = slipfit_core::law::Regularised<f32>;
 
 fn ahead(data: &SlideData<f64>, limits: Limits<f32>) -> Predicted {
     let slide: CdRomSlide<f32> = cd_rom::from_data(&data.cast(|x| x as f32));
-    let led = slide.driven_by(Led::led(slide.drive().gain)).expect("the gain is in bounds");
+    let led = slide.driven_by(SetpointDrive::new(slide.drive().gain)).expect("the gain is in bounds");
     Ahead::new(led, limits).expect("the limits are in bounds")
 }
 

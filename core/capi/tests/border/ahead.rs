@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use slipfit_capi::*;
 use slipfit_core::{
     ahead::{Ahead, Limits, Prediction, State},
-    drive::Led,
+    drive::SetpointDrive,
     menu::FrictionData,
     pose::Pose,
 };
@@ -99,7 +99,8 @@ fn a_prediction_ahead_of_the_clock_is_rusts() {
     let slipfit_ahead_limits { period, tolerance, lead, lag, .. } = LIMITS;
     let limits = Limits { period, tolerance, lead, lag, attempts: 2 };
     let (one, other) = (slide(&first, 2.5), slide(&second, 2.0));
-    let made = |of: &CdRomSlide<f32>| Ahead::new(of.driven_by(Led::led(of.drive().gain)).unwrap(), limits).unwrap();
+    let made =
+        |of: &CdRomSlide<f32>| Ahead::new(of.driven_by(SetpointDrive::new(of.drive().gain)).unwrap(), limits).unwrap();
     let (mut ahead, mut ramp) = (made(&one), *one.drive());
     let mut state: State<f32, _, 6, 256> = ahead.at_rest(Pose::nominal(), 70, |t| ramp.command(t));
     let horizon = ahead.horizon(&state);

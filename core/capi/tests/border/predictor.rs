@@ -91,7 +91,7 @@ fn what_cannot_be_stepped_is_refused() {
     assert_eq!(made(&negative, 2.5), SLIPFIT_PARAMETER);
 }
 
-/// What a drive is told once a period: there and back, a jump, a rest, there and back.
+/// The command of each period: there and back, a jump, a rest, there and back.
 fn command(period: u32) -> f32 {
     match period {
         0..600 => 0.1 * super::ahead::wave(period, 1200),

@@ -343,7 +343,7 @@ fn source(token: &str, mechanism: &Mechanism, variables: &[super::Variable], mod
         "{constants}use slipfit_core::{{SVector, kernel::{{Kernel, Report}}{laws}, system::{{Bodies, Element, Link, Reduced, System}}}};\n\n\
          use crate::instance::{{Trouble{gap}}};\n\n\
          /// The kernel of some values.\n#[derive(Clone, Copy)]\npub struct Model(kernel::Parameters);\n\n\
-         impl Model {{\n    #[allow(unused_variables)]\n    pub fn new(values: &[f64; VALUES], told: &[bool; VALUES]) -> Result<Self, Trouble> {{\n        \
+         impl Model {{\n    #[allow(unused_variables)]\n    pub fn new(values: &[f64; VALUES], set_while_stepping: &[bool; VALUES]) -> Result<Self, Trouble> {{\n        \
          let unit = kernel::unit::<f32>(values[0] as f32)?;\n        \
          #[allow(unused_mut)]\n        let mut elements = *unit.elements();\n{changes}        \
          Ok(Self(Kernel::new(System::new(*unit.bodies(), elements), kernel::STEP)?))\n    }}\n\n    \

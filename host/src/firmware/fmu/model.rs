@@ -43,7 +43,7 @@ pub(super) fn command(drive: &str, value: &str) -> String {
     format!(
         "        if {} {{\n            slipfit_core::drive::Commandable::set_command(&mut {drive}, {value} as f32);\n        }} else {{\n            \
          {drive}.speed = {value} as f32;\n        }}\n",
-        value.replace("values", "told")
+        value.replace("values", "set_while_stepping")
     )
 }
 

@@ -82,7 +82,7 @@ pub fn slide_unit(scene: &Scene, core: &Path) -> Unit {
          use slipfit_core::{{kernel::{{Kernel, Report}}, law::{{{elastic}, {friction}, Impact}}, menu::ContactData, slide::Slide}};\n\n\
          use crate::instance::{{Trouble, gap}};\n\n\
          /// The kernel of some values.\n#[derive(Clone, Copy)]\npub struct Model(Predictor);\n\n\
-         impl Model {{\n    pub fn new(values: &[f64; VALUES], told: &[bool; VALUES]) -> Result<Self, Trouble> {{\n        \
+         impl Model {{\n    pub fn new(values: &[f64; VALUES], set_while_stepping: &[bool; VALUES]) -> Result<Self, Trouble> {{\n        \
          let mut unit = SCENE.at(values[0] as f32)?;\n{body}        \
          let ContactData {{ stiffness, {exponent}damping, depth, .. }} = unit.contact;\n        \
          let contact = Impact::new({made_elastic}, damping, depth)?;\n        \

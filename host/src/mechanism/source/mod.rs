@@ -156,7 +156,7 @@ fn write_hashes(text: &mut String, mechanism: &Mechanism) {
     };
 }
 
-/// Functions for each drive that say what it gives, and tell it a command. Drives are the last elements.
+/// Functions for each drive that evaluate it and set its command. Drives are the last elements.
 fn write_drives(mechanism: &Mechanism, parts: &Parts) -> String {
     let first = parts.elements.len() - mechanism.drives.len();
     let paths = parts.paths();
@@ -202,7 +202,7 @@ pub fn dimension(mechanism: &Mechanism) -> Result<usize, RunError> {
     Ok(parts(mechanism, &mut Contacts::default())?.dimension)
 }
 
-/// What the function is called that tells a drive its command, whose own is called `drive_name`.
+/// The name of the function that sets the command of the drive whose function is called `drive_name`.
 pub fn command_name(drive_name: &str) -> String {
     drive_name.replacen("drive", "command", 1)
 }

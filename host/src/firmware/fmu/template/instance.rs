@@ -65,8 +65,8 @@ pub struct Situation {
     /// Steps taken.
     steps: u64,
     values: [f64; VALUES],
-    /// Which of them have been set between two steps: a command that was is no longer the end of a ramp.
-    told: [bool; VALUES],
+    /// Which of them have been set in step mode: a command that was replaces the scene's ramp.
+    set_while_stepping: [bool; VALUES],
     /// The kernel of these values; none where they have changed since, or allow none.
     model: Option<Model>,
     state: State,
@@ -76,15 +76,15 @@ pub struct Situation {
 impl Situation {
     /// Before anything was set.
     pub fn new() -> Result<Self, Trouble> {
-        let told = [false; VALUES];
-        let model = Model::new(&START, &told)?;
+        let set_while_stepping = [false; VALUES];
+        let model = Model::new(&START, &set_while_stepping)?;
         Ok(Self {
             mode: Mode::Instantiated,
             start: 0.0,
             time: 0.0,
             steps: 0,
             values: START,
-            told,
+            set_while_stepping,
             model: Some(model),
             state: model.start(),
             report: Report { residual: 0.0, error: 0.0 },
@@ -142,7 +142,7 @@ impl Situation {
     fn made(&mut self) -> Result<Model, Trouble> {
         let model = match self.model {
             Some(model) => model,
-            None => Model::new(&self.values, &self.told)?,
+            None => Model::new(&self.values, &self.set_while_stepping)?,
         };
         self.model = Some(model);
         Ok(model)
@@ -181,7 +181,7 @@ impl Situation {
         if references.len() != values.len() {
             return Err(format!("{} variables are to be set to {} values", references.len(), values.len()).into());
         }
-        let (mut next, mut told) = (self.values, self.told);
+        let (mut next, mut set_while_stepping) = (self.values, self.set_while_stepping);
         for (reference, value) in references.iter().zip(values) {
             let at = (*reference as usize).wrapping_sub(1);
             let Some(name) = NAMES.get(at) else {
@@ -196,11 +196,11 @@ impl Situation {
                 return Err(format!("{name} is {value}, allowed are finite numbers").into());
             }
             next[at] = *value;
-            told[at] = self.mode == Mode::Step;
+            set_while_stepping[at] = self.mode == Mode::Step;
         }
         // While stepping, values that allow no kernel must not be taken.
-        let model = if self.mode == Mode::Step { Some(Model::new(&next, &told)?) } else { None };
-        (self.values, self.told, self.model) = (next, told, model);
+        let model = if self.mode == Mode::Step { Some(Model::new(&next, &set_while_stepping)?) } else { None };
+        (self.values, self.set_while_stepping, self.model) = (next, set_while_stepping, model);
         Ok(())
     }
 
@@ -235,7 +235,7 @@ impl Situation {
 
 /// The situation as bytes, in little-endian order whatever the machine, and their checksum, CRC-32/ISO-HDLC.
 pub fn serialised(situation: &Situation) -> Vec<u8> {
-    let Situation { mode, start, time, steps, values, told, state, report, .. } = situation;
+    let Situation { mode, start, time, steps, values, set_while_stepping, state, report, .. } = situation;
     let mut bytes = Vec::new();
     bytes.extend((TOKEN.len() as u64).to_le_bytes());
     bytes.extend(TOKEN.as_bytes());
@@ -244,7 +244,7 @@ pub fn serialised(situation: &Situation) -> Vec<u8> {
     bytes.extend(time.to_le_bytes());
     bytes.extend(steps.to_le_bytes());
     bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
-    bytes.extend(told.map(u8::from));
+    bytes.extend(set_while_stepping.map(u8::from));
     bytes.extend(state.steps.to_le_bytes());
     let mut state = *state;
     let mut number = |number: &mut f32| bytes.extend(number.to_le_bytes());
@@ -287,8 +287,8 @@ pub fn deserialised(bytes: &[u8]) -> Result<Situation, Trouble> {
     for value in &mut situation.values {
         *value = double(word(8));
     }
-    for told in &mut situation.told {
-        *told = word(1)[0] != 0;
+    for set_while_stepping in &mut situation.set_while_stepping {
+        *set_while_stepping = word(1)[0] != 0;
     }
     situation.state.steps = u32::from_le_bytes(word(4).try_into().unwrap_or_default());
     let mut number = |number: &mut f32| *number = single(word(4));

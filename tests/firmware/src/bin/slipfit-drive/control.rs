@@ -3,7 +3,7 @@
 use slipfit_core::{
     ParameterError,
     ahead::{self, Ahead},
-    drive::{Drive, Led},
+    drive::{Drive, SetpointDrive},
     law::{Friction, Impact, Regularised, ThreeHalves},
     menu::ContactData,
     monitor::{LevelBank, Limits, Monitor, Sample, Verdict, Watch},
@@ -27,7 +27,7 @@ const EARLY: u32 = 70;
 const STICK_BAND: f32 = 1e-5;
 
 /// The prediction of a unit, ahead of the clock.
-pub type Prediction = Ahead<f32, Slide<f32, ThreeHalves<f32>, Regularised<f32>, [f32; 4], Led<f32>>>;
+pub type Prediction = Ahead<f32, Slide<f32, ThreeHalves<f32>, Regularised<f32>, [f32; 4], SetpointDrive<f32>>>;
 
 /// What it keeps: too much for the stack, so that there is one, in its place.
 pub type Motions = ahead::State<f32, Pose<f32>, 6, 128>;
@@ -100,7 +100,7 @@ pub fn prediction(level: f32) -> (Prediction, Drive<f32>) {
     let limits = ahead::Limits { period: STEP, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 1 };
     let unit = unit(level, |coefficient| Regularised::new(coefficient, STICK_BAND)).expect("the level is in bounds");
     let ramp = *unit.drive();
-    let led = unit.driven_by(Led::led(ramp.gain)).and_then(|led| Ahead::new(led, limits));
+    let led = unit.driven_by(SetpointDrive::new(ramp.gain)).and_then(|led| Ahead::new(led, limits));
     (led.expect("the scene's gain is in bounds"), ramp)
 }
 

@@ -5,7 +5,7 @@ use core::{fmt::Display, hint::black_box};
 use slipfit_core::{
     Vector2,
     ahead::{self, Ahead, Prediction},
-    drive::{Drive, Led},
+    drive::{Drive, SetpointDrive},
     integrator::{ImplicitEuler, Integrator},
     kernel::{Kernel, Report, StateOf},
     law::{
@@ -75,7 +75,7 @@ macro_rules! rungs {
 }
 
 /// A slide ahead of the clock of its ramp, and the motions it keeps.
-type SlideAhead = Ahead<f32, Slide<f32, ThreeHalves<f32>, Regularised<f32>, [f32; 4], Led<f32>>>;
+type SlideAhead = Ahead<f32, Slide<f32, ThreeHalves<f32>, Regularised<f32>, [f32; 4], SetpointDrive<f32>>>;
 type SlideAheadState = ahead::State<f32, Pose<f32>, 6, 256>;
 
 /// A prediction, the ramp that its command takes, and its motions.
@@ -89,7 +89,7 @@ impl AlongRamp {
     fn new(slide: Unit<ThreeHalves<f32>, Regularised<f32>>) -> Self {
         let limits = ahead::Limits { period: STEP, tolerance: 7e-5, lead: 0.2, lag: 0.2, attempts: 1 };
         let ramp = *slide.drive();
-        let slide = slide.driven_by(Led::led(ramp.gain)).expect("the gain is in bounds");
+        let slide = slide.driven_by(SetpointDrive::new(ramp.gain)).expect("the gain is in bounds");
         let ahead = Ahead::new(slide, limits).expect("the limits are in bounds");
         Self { state: ahead.at_rest(Pose::nominal(), EARLY, |t| ramp.command(t)), ahead, ramp }
     }
