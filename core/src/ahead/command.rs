@@ -79,10 +79,9 @@ impl<S: Scalar + AsPrimitive<u32>, M> Ahead<S, M> {
         state.deviation = deviation;
         let parabola = state.history.update(speed, deviation, horizon);
         state.setpoints.set(1, is_predicted.select_gt(zero, assumed, speed));
-        let kept = horizon * (one - state.is_open);
-        for periods in 1..=self.reach::<N>().horizon {
-            let (after, at) = (S::from_count(periods), periods.wrapping_add(1).cast_signed());
-            state.setpoints.set(at, kept.select_gt(after, state.setpoints.at(at), parabola.after(after)));
+        let (horizon, is_first) = (self.reach::<N>().horizon, AsPrimitive::<u32>::as_(state.is_open));
+        for periods in if is_first == 1 { 1 } else { horizon }..=horizon {
+            state.setpoints.set(periods.wrapping_add(1).cast_signed(), parabola.after(S::from_count(periods)));
         }
     }
 }
