@@ -33,7 +33,10 @@ use slipfit_core::{
     scene::SceneData,
     table::{Table, Word, layout},
 };
-use slipfit_problems::cd_rom::{self, CdRomSlide};
+use slipfit_problems::{
+    arcs,
+    cd_rom::{self, CdRomSlide},
+};
 use slipfit_tests::{
     cross::{self, TARGET, printed, whole_program},
     guide,
@@ -183,9 +186,7 @@ fn hashed_bytes(bytes: impl IntoIterator<Item = u8>) -> u64 {
 
 /// The C program's command in a period.
 fn command(period: u32) -> f32 {
-    let x = 2.0 * (period % 800) as f32 / 800.0;
-    let (sign, x) = if x < 1.0 { (0.08, x) } else { (-0.08, x - 1.0) };
-    sign * 4.0 * x * (1.0 - x)
+    arcs(0.08, period, 800)
 }
 
 /// The C program's prediction ahead of the clock: a hash of all that it says, and in how many periods it is behind.

@@ -83,9 +83,7 @@ fn commanded(n: f32) -> Value {
     let mut state = kernel.at_rest(Pose::nominal());
     let (mut speeds, mut rows) = (Vec::new(), Vec::new());
     for period in 0..20_000 {
-        let x = 2.0 * (period % 800) as f32 / 800.0;
-        let (sign, x) = if x < 1.0 { (0.08, x) } else { (-0.08, x - 1.0) };
-        let speed = sign * 4.0 * x * (1.0 - x);
+        let speed = slipfit_problems::arcs(0.08, period, 800);
         kernel.mechanism_mut().drive_mut().set_command(speed);
         let _ = kernel.step(&mut state);
         let (velocity, place) = (state.motion.velocity, state.motion.pose.displacement_w);

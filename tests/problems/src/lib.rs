@@ -2,7 +2,10 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod arcs;
 pub mod cd_rom;
 pub mod first_order;
 pub mod laws;
 pub mod mechanisms;
+
+pub use arcs::arcs;

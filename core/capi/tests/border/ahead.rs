@@ -8,7 +8,10 @@ use slipfit_core::{
     menu::FrictionData,
     pose::Pose,
 };
-use slipfit_problems::cd_rom::{self, CdRomSlide};
+use slipfit_problems::{
+    arcs,
+    cd_rom::{self, CdRomSlide},
+};
 
 use super::{SPECIAL, common::zeroed, regularised};
 
@@ -71,13 +74,6 @@ pub fn slide(scene: &slipfit_scene, n: f32) -> CdRomSlide<f32> {
     cd_rom::from_data(&data)
 }
 
-/// Arcs of parabolas between -1 and 1, two in `every` periods.
-pub fn wave(period: u32, every: u32) -> f32 {
-    let x = 2.0 * (period % every) as f32 / every as f32;
-    let (sign, x) = if x < 1.0 { (1.0, x) } else { (-1.0, x - 1.0) };
-    sign * 4.0 * x * (1.0 - x)
-}
-
 /// Whether `c` says of a period what Rust says.
 unsafe fn assert_is_rusts(c: &slipfit_ahead, status: slipfit_status, rust: Prediction<f32>, period: usize) {
     let mut said = zeroed::<slipfit_ahead_prediction>();
@@ -104,7 +100,7 @@ fn a_prediction_ahead_of_the_clock_is_rusts() {
     let (mut ahead, mut ramp) = (made(&one), *one.drive());
     let mut state: State<f32, _, 6, 256> = ahead.at_rest(Pose::nominal(), 70, |t| ramp.command(t));
     let horizon = ahead.horizon(&state);
-    let command = |period: usize| 0.05 * wave(period as u32, 628);
+    let command = |period: usize| arcs(0.05, period as u32, 628);
     let (mut c, mut said) = (zeroed::<slipfit_ahead>(), zeroed::<slipfit_ahead_prediction>());
     // SAFETY: every pointer is to a local of its type.
     unsafe {

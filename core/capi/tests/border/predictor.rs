@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use slipfit_capi::*;
+use slipfit_problems::arcs;
 
 use super::{
     NUMBERS, SPECIAL,
@@ -94,10 +95,10 @@ fn what_cannot_be_stepped_is_refused() {
 /// The command of each period: there and back, a jump, a rest, there and back.
 fn command(period: u32) -> f32 {
     match period {
-        0..600 => 0.1 * super::ahead::wave(period, 1200),
+        0..600 => arcs(0.1, period, 1200),
         600..700 => -0.05,
         700..900 => 0.0,
-        _ => 0.08 * super::ahead::wave(period, 310),
+        _ => arcs(0.08, period, 310),
     }
 }
 
