@@ -93,6 +93,7 @@ const LAYERS: [(&str, &[&str]); 7] = [
             "integrator",
             "kernel",
             "ahead",
+            "observer",
             "system",
             "slide",
             "menu",

@@ -27,6 +27,7 @@ mod linear;
 pub mod mechanism;
 pub mod menu;
 pub mod monitor;
+pub mod observer;
 pub mod pose;
 pub mod power;
 mod product;

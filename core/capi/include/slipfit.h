@@ -130,6 +130,11 @@ typedef struct slipfit_prediction {
   float residual;
 } slipfit_prediction;
 
+// Memory of an observer; opaque.
+typedef struct slipfit_observer {
+  uint64_t words[4];
+} slipfit_observer;
+
 // Memory of a prediction ahead of the clock; opaque.
 typedef struct slipfit_ahead {
   uint32_t words[4231];
@@ -486,7 +491,7 @@ typedef struct slipfit_wear {
 #define SLIPFIT_UNIT_STROKES 43
 
 // What the sizes of the structs come to: the second argument of slipfit_check_header.
-#define SLIPFIT_LAYOUT ((((((((((((((((((((((((((((0u * 31u + sizeof(slipfit_ahead))\
+#define SLIPFIT_LAYOUT (((((((((((((((((((((((((((((0u * 31u + sizeof(slipfit_ahead))\
  * 31u + sizeof(slipfit_ahead_limits))\
  * 31u + sizeof(slipfit_ahead_prediction))\
  * 31u + sizeof(slipfit_bank))\
@@ -497,6 +502,7 @@ typedef struct slipfit_wear {
  * 31u + sizeof(slipfit_limits))\
  * 31u + sizeof(slipfit_lookup))\
  * 31u + sizeof(slipfit_monitor))\
+ * 31u + sizeof(slipfit_observer))\
  * 31u + sizeof(slipfit_prediction))\
  * 31u + sizeof(slipfit_predictor))\
  * 31u + sizeof(slipfit_production_report))\
@@ -566,6 +572,41 @@ slipfit_status slipfit_predictor_restart(struct slipfit_predictor *storage);
 // # Safety
 // As for slipfit_predictor_step; nobody else uses `*prediction` meanwhile.
 slipfit_status slipfit_predictor_read(const struct slipfit_predictor *storage, struct slipfit_prediction *prediction);
+
+// Makes an observer in `*storage` for predictors of `*scene`: the standard deviations of a measured speed, `speed_noise` (m/s), and of
+// what the force that the model lacks changes by in a step, `force_noise` (N). That force stays within the greatest that drive and
+// weight have.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*storage` meanwhile.
+slipfit_status slipfit_observer_init(struct slipfit_observer *storage,
+                                     const struct slipfit_scene *scene,
+                                     float speed_noise,
+                                     float force_noise);
+
+// Moves `*predictor` by one step under the commanded speed `command` (m/s, within 1000 either way), corrected by the speed that was
+// `measured` (m/s) at the end of the step; NAN if none was. Its force is then the real drive's, of the corrected speed.
+// SLIPFIT_NOT_FINITE if the motion could not be moved and was held.
+//
+// # Safety
+// As for slipfit_observer_init; the memory of both has been written before; nobody else uses `*predictor` meanwhile.
+slipfit_status slipfit_observer_step(struct slipfit_observer *storage,
+                                     struct slipfit_predictor *predictor,
+                                     float command,
+                                     float measured);
+
+// Sets `*force` to the force (N) along the drive that the model lacks: negative where the unit is harder to move than the model's.
+//
+// # Safety
+// As for slipfit_observer_step; nobody else uses `*force` meanwhile.
+slipfit_status slipfit_observer_missing(const struct slipfit_observer *storage,
+                                        float *force);
+
+// The model lacks nothing again: for another unit.
+//
+// # Safety
+// As for slipfit_observer_step.
+slipfit_status slipfit_observer_restart(struct slipfit_observer *storage);
 
 // Makes a prediction ahead of the clock in `*storage` for a unit of tolerance level `n` (-20 to 20) of `*scene`, at rest until its release at
 // time 0. Its clock starts `early` periods before, SLIPFIT_AHEAD_EARLY_MOST at most, in which it takes a lead. Its command is the

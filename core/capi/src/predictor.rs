@@ -44,11 +44,11 @@ pub struct slipfit_prediction {
 
 #[derive(Clone, Copy)]
 pub(crate) struct Predictor {
-    kernel: Kernel<f32, Unit<Friction>, ImplicitEuler<4>>,
-    state: StateOf<f32, Unit<Friction>, 6>,
+    pub(crate) kernel: Kernel<f32, Unit<Friction>, ImplicitEuler<4>>,
+    pub(crate) state: StateOf<f32, Unit<Friction>, 6>,
     report: Report<f32>,
     /// Force of the drive (N) at the end of the last step: another command counts from the next one on.
-    force: f32,
+    pub(crate) force: f32,
 }
 
 // SAFETY: plain words.
@@ -90,14 +90,14 @@ impl Predictor {
 
     /// One step; whether the motion could be moved. One copy in the code serves the trial too.
     #[inline(never)]
-    fn advance(&mut self) -> bool {
+    pub(crate) fn advance(&mut self) -> bool {
         self.report = self.kernel.step(&mut self.state);
         self.force = self.force();
         self.report.residual.is_finite()
     }
 
     /// Force of the drive (N) now.
-    fn force(&self) -> f32 {
+    pub(crate) fn force(&self) -> f32 {
         self.kernel.mechanism().drive().force(self.kernel.time(self.state.steps), self.state.motion.velocity.z)
     }
 
@@ -118,9 +118,7 @@ fn predictor(scene: &slipfit_scene, n: f32) -> Result<Predictor, Refusal> {
     let slide = scene.slide(n, friction)?;
     // A step out of bounds is refused before its halves are tried, of which there are ten at most.
     Kernel::<f32, _, ImplicitEuler<4>>::new(slide, scene.step)?;
-    // What the drive can push with, and the weight.
-    let [x, y, z] = scene.gravity.map(|part| part * scene.mass);
-    let greatest = (scene.drive_gain * scene.drive_speed).abs() + x.abs() + y.abs() + z.abs();
+    let greatest = scene.greatest_force();
     let mut step = scene.step;
     while step > TRIAL_STEP {
         step *= 0.5;

@@ -94,6 +94,12 @@ impl slipfit_scene {
         })
     }
 
+    /// What the drive can push with, and the weight (N).
+    pub(crate) fn greatest_force(&self) -> f32 {
+        let [x, y, z] = self.gravity.map(|part| part * self.mass);
+        (self.drive_gain * self.drive_speed).abs() + x.abs() + y.abs() + z.abs()
+    }
+
     /// The unit of tolerance level `n`, whose friction is what `friction` makes of the scene's.
     pub(crate) fn slide<F: Friction<f32>>(
         &self,

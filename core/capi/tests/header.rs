@@ -12,6 +12,7 @@ fn the_header_is_current() {
         "layout",
         "scene",
         "predictor",
+        "observer",
         "ahead",
         "table",
         "integers",

@@ -48,6 +48,7 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
     let (mut integers, mut integer) = (zeroed::<slipfit_integers>(), zeroed::<slipfit_integer_lookup>());
     let (mut ahead, mut force) = (Box::new(zeroed::<slipfit_ahead>()), 0.0);
     let ahead = &mut *ahead;
+    let mut observer = zeroed::<slipfit_observer>();
     let (length, half) = (bytes.len() as u32, bytes.len() / 2);
     let (mut scene, mut limits) = (scene(SLIPFIT_FRICTION_REGULARISED), zeroed::<slipfit_limits>());
     limits.period = 1e-3;
@@ -56,7 +57,7 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
     unsafe {
         for (call, x, y) in calls {
             let sample = slipfit_sample { time: x, force: y, speed: y, command: x };
-            let status = match call % 31 {
+            let status = match call % 33 {
                 0 => slipfit_predictor_init(&mut predictor, &scene, x),
                 1 => slipfit_predictor_step(&mut predictor),
                 2 => slipfit_predictor_read(&predictor, &mut said),
@@ -108,6 +109,8 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
                 27 => slipfit_ahead_plan(ahead, y.to_bits(), x),
                 28 => slipfit_ahead_follow(ahead, x),
                 29 => slipfit_ahead_forecast(ahead, x.to_bits(), &mut force),
+                30 => slipfit_observer_init(&mut observer, &scene, x, y),
+                31 => slipfit_observer_step(&mut observer, &mut predictor, x, y),
                 _ => slipfit_table_look_up(&table, x, y, ptr::null_mut()),
             };
             assert!((SLIPFIT_OK..=SLIPFIT_MONITOR_BAND).contains(&status));

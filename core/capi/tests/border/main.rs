@@ -7,6 +7,7 @@ mod common;
 mod integers;
 mod jam_watch;
 mod monitor;
+mod observer;
 mod pointers;
 mod predictor;
 mod production;

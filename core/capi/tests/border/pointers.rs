@@ -24,11 +24,13 @@ fn null_and_misaligned_pointers_are_refused() {
     let (mut jam_watch, mut other_watch, mut jam) = (zeroed::<slipfit_jam_watch>(), zeroed::<slipfit_jam_watch>(), 0);
     let mut other_bank = zeroed::<slipfit_bank>();
     let (mut ahead, mut other_ahead) = (zeroed::<slipfit_ahead>(), zeroed::<slipfit_ahead>());
+    let (mut observer, mut other_observer) = (zeroed::<slipfit_observer>(), zeroed::<slipfit_observer>());
     let mut said_ahead = zeroed::<slipfit_ahead_prediction>();
     let (mut periods, mut force) = (0u32, 0.0f32);
     // SAFETY: what is neither null nor misaligned points at locals.
     unsafe {
         assert_eq!(slipfit_predictor_init(&mut predictor, &scene, 2.5), SLIPFIT_OK);
+        assert_eq!(slipfit_observer_init(&mut observer, &scene, 1e-3, 1e-2), SLIPFIT_OK);
         assert_eq!(slipfit_ahead_init(&mut ahead, &regularised(), 2.5, &LIMITS, 0), SLIPFIT_OK);
         assert_eq!(slipfit_table_open(&mut table, bytes.as_ptr(), length, SLIPFIT_AXIS_TIME, 7), SLIPFIT_OK);
         assert_eq!(slipfit_bank_init(&mut bank, &table), SLIPFIT_OK);
@@ -52,6 +54,13 @@ fn null_and_misaligned_pointers_are_refused() {
                 slipfit_predictor_restart(bad!(predictor)),
                 slipfit_predictor_read(bad!(predictor), &mut said),
                 slipfit_predictor_read(&predictor, bad!(said)),
+                slipfit_observer_init(bad!(observer), &scene, 1e-3, 1e-2),
+                slipfit_observer_init(&mut other_observer, bad!(scene), 1e-3, 1e-2),
+                slipfit_observer_step(bad!(observer), &mut predictor, 0.1, 0.1),
+                slipfit_observer_step(&mut observer, bad!(predictor), 0.1, 0.1),
+                slipfit_observer_missing(bad!(observer), &mut force),
+                slipfit_observer_missing(&observer, bad!(force)),
+                slipfit_observer_restart(bad!(observer)),
                 slipfit_ahead_init(bad!(ahead), &scene, 2.5, &LIMITS, 0),
                 slipfit_ahead_init(&mut other_ahead, bad!(scene), 2.5, &LIMITS, 0),
                 slipfit_ahead_init(&mut other_ahead, &scene, 2.5, bad!(LIMITS), 0),
