@@ -94,6 +94,7 @@ const LAYERS: [(&str, &[&str]); 7] = [
             "kernel",
             "ahead",
             "observer",
+            "deadline",
             "system",
             "slide",
             "menu",

@@ -18,6 +18,7 @@ extern crate std;
 pub mod ahead;
 mod cast;
 pub mod clearance;
+pub mod deadline;
 pub mod drive;
 mod error;
 pub mod integrator;

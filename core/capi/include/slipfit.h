@@ -259,6 +259,23 @@ typedef struct slipfit_watch {
   uint64_t words[96];
 } slipfit_watch;
 
+// Memory of a deadline; opaque.
+typedef struct slipfit_deadline {
+  uint32_t words[8];
+} slipfit_deadline;
+
+// The timing of an interrupt since its first call. No count wraps around.
+typedef struct slipfit_timing {
+  // Calls that have begun.
+  uint32_t calls;
+  // Periods in which no call began. A call that begins up to half a period late is in its own.
+  uint32_t missed;
+  // The longest call, in ticks of the counter.
+  uint32_t longest;
+  // Calls that took longer than a period.
+  uint32_t overruns;
+} slipfit_timing;
+
 // Where free ends, and when a jam is one.
 typedef struct slipfit_limits {
   // Time from one sample to the next (s).
@@ -491,10 +508,11 @@ typedef struct slipfit_wear {
 #define SLIPFIT_UNIT_STROKES 43
 
 // What the sizes of the structs come to: the second argument of slipfit_check_header.
-#define SLIPFIT_LAYOUT (((((((((((((((((((((((((((((0u * 31u + sizeof(slipfit_ahead))\
+#define SLIPFIT_LAYOUT (((((((((((((((((((((((((((((((0u * 31u + sizeof(slipfit_ahead))\
  * 31u + sizeof(slipfit_ahead_limits))\
  * 31u + sizeof(slipfit_ahead_prediction))\
  * 31u + sizeof(slipfit_bank))\
+ * 31u + sizeof(slipfit_deadline))\
  * 31u + sizeof(slipfit_estimate))\
  * 31u + sizeof(slipfit_integer_lookup))\
  * 31u + sizeof(slipfit_integers))\
@@ -517,6 +535,7 @@ typedef struct slipfit_wear {
  * 31u + sizeof(slipfit_stroke_end))\
  * 31u + sizeof(slipfit_table))\
  * 31u + sizeof(slipfit_table3))\
+ * 31u + sizeof(slipfit_timing))\
  * 31u + sizeof(slipfit_unit))\
  * 31u + sizeof(slipfit_watch))\
  * 31u + sizeof(slipfit_wear))
@@ -817,6 +836,31 @@ slipfit_status slipfit_scrubber_check(struct slipfit_scrubber *storage,
 slipfit_status slipfit_seal(const void *object,
                             uint32_t size,
                             uint32_t *seal);
+
+// Makes a deadline in `*storage` for an interrupt every `period` ticks (2 to 2^29) of a counter that counts up and wraps around at 2^32.
+//
+// # Safety
+// Pointers that are neither null nor misaligned point at what their types say; nobody else uses `*storage` meanwhile.
+slipfit_status slipfit_deadline_init(struct slipfit_deadline *storage,
+                                     uint32_t period);
+
+// A call of the interrupt begins, at `now` of the counter.
+//
+// # Safety
+// As for slipfit_deadline_init; the memory has been written before.
+slipfit_status slipfit_deadline_begin(struct slipfit_deadline *storage, uint32_t now);
+
+// The call ends, at `now` of the counter.
+//
+// # Safety
+// As for slipfit_deadline_begin.
+slipfit_status slipfit_deadline_end(struct slipfit_deadline *storage, uint32_t now);
+
+// Sets `*timing` to what is known of all calls so far.
+//
+// # Safety
+// As for slipfit_deadline_begin; nobody else uses `*timing` meanwhile.
+slipfit_status slipfit_deadline_read(const struct slipfit_deadline *storage, struct slipfit_timing *timing);
 
 // Limits for samples a `period` (s) apart with white noise of standard deviation `noise` (N) on the force: averages over 20
 // periods, five standard deviations of what the average leaves of the noise, jams held for ten periods, a band of half a

@@ -2,6 +2,7 @@
 
 use crate::{
     ahead::*,
+    deadline::*,
     integers::*,
     jam_watch::*,
     monitor::*,
@@ -24,11 +25,11 @@ macro_rules! layout {
 
 #[rustfmt::skip]
 const LAYOUT: usize = layout!(
-    slipfit_ahead, slipfit_ahead_limits, slipfit_ahead_prediction, slipfit_bank, slipfit_estimate, slipfit_integer_lookup,
+    slipfit_ahead, slipfit_ahead_limits, slipfit_ahead_prediction, slipfit_bank, slipfit_deadline, slipfit_estimate, slipfit_integer_lookup,
     slipfit_integers, slipfit_jam_watch, slipfit_limits, slipfit_lookup, slipfit_monitor, slipfit_observer,
     slipfit_prediction, slipfit_predictor, slipfit_production_report, slipfit_production_sample, slipfit_record, slipfit_report, slipfit_sample,
     slipfit_scene, slipfit_scrubber, slipfit_slots, slipfit_spare, slipfit_stroke_end, slipfit_table, slipfit_table3,
-    slipfit_unit, slipfit_watch, slipfit_wear
+    slipfit_timing, slipfit_unit, slipfit_watch, slipfit_wear
 );
 
 /// Call it once, as slipfit_check_header(SLIPFIT_VERSION, SLIPFIT_LAYOUT): SLIPFIT_HEADER if the program was compiled with a header of

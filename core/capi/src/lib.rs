@@ -19,6 +19,7 @@ pub extern "C" fn slipfit_panic(divisor: u32) -> u32 {
 
 mod ahead;
 mod border;
+mod deadline;
 mod integers;
 mod jam_watch;
 mod layout;
@@ -34,6 +35,7 @@ mod status;
 mod table;
 
 pub use ahead::*;
+pub use deadline::*;
 pub use integers::*;
 pub use jam_watch::*;
 pub use layout::*;

@@ -19,6 +19,7 @@ fn the_header_is_current() {
         "slots",
         "scrubber",
         "seal",
+        "deadline",
         "monitor",
         "jam_watch",
         "production",

@@ -48,7 +48,7 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
     let (mut integers, mut integer) = (zeroed::<slipfit_integers>(), zeroed::<slipfit_integer_lookup>());
     let (mut ahead, mut force) = (Box::new(zeroed::<slipfit_ahead>()), 0.0);
     let ahead = &mut *ahead;
-    let mut observer = zeroed::<slipfit_observer>();
+    let (mut observer, mut deadline) = (zeroed::<slipfit_observer>(), zeroed::<slipfit_deadline>());
     let (length, half) = (bytes.len() as u32, bytes.len() / 2);
     let (mut scene, mut limits) = (scene(SLIPFIT_FRICTION_REGULARISED), zeroed::<slipfit_limits>());
     limits.period = 1e-3;
@@ -57,7 +57,7 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
     unsafe {
         for (call, x, y) in calls {
             let sample = slipfit_sample { time: x, force: y, speed: y, command: x };
-            let status = match call % 33 {
+            let status = match call % 36 {
                 0 => slipfit_predictor_init(&mut predictor, &scene, x),
                 1 => slipfit_predictor_step(&mut predictor),
                 2 => slipfit_predictor_read(&predictor, &mut said),
@@ -111,6 +111,9 @@ fuzz_target!(|input: (Vec<u8>, Vec<(u8, f32, f32)>)| {
                 29 => slipfit_ahead_forecast(ahead, x.to_bits(), &mut force),
                 30 => slipfit_observer_init(&mut observer, &scene, x, y),
                 31 => slipfit_observer_step(&mut observer, &mut predictor, x, y),
+                32 => slipfit_deadline_init(&mut deadline, x.to_bits()),
+                33 => slipfit_deadline_begin(&mut deadline, x.to_bits()),
+                34 => slipfit_deadline_end(&mut deadline, y.to_bits()),
                 _ => slipfit_table_look_up(&table, x, y, ptr::null_mut()),
             };
             assert!((SLIPFIT_OK..=SLIPFIT_MONITOR_BAND).contains(&status));

@@ -4,6 +4,7 @@
 mod ahead;
 #[path = "../common/mod.rs"]
 mod common;
+mod deadline;
 mod integers;
 mod jam_watch;
 mod monitor;

@@ -25,6 +25,7 @@ fn null_and_misaligned_pointers_are_refused() {
     let mut other_bank = zeroed::<slipfit_bank>();
     let (mut ahead, mut other_ahead) = (zeroed::<slipfit_ahead>(), zeroed::<slipfit_ahead>());
     let (mut observer, mut other_observer) = (zeroed::<slipfit_observer>(), zeroed::<slipfit_observer>());
+    let (deadline, mut timing) = (zeroed::<slipfit_deadline>(), zeroed::<slipfit_timing>());
     let mut said_ahead = zeroed::<slipfit_ahead_prediction>();
     let (mut periods, mut force) = (0u32, 0.0f32);
     // SAFETY: what is neither null nor misaligned points at locals.
@@ -61,6 +62,11 @@ fn null_and_misaligned_pointers_are_refused() {
                 slipfit_observer_missing(bad!(observer), &mut force),
                 slipfit_observer_missing(&observer, bad!(force)),
                 slipfit_observer_restart(bad!(observer)),
+                slipfit_deadline_init(bad!(deadline), 1000),
+                slipfit_deadline_begin(bad!(deadline), 0),
+                slipfit_deadline_end(bad!(deadline), 0),
+                slipfit_deadline_read(bad!(deadline), &mut timing),
+                slipfit_deadline_read(&deadline, bad!(timing)),
                 slipfit_ahead_init(bad!(ahead), &scene, 2.5, &LIMITS, 0),
                 slipfit_ahead_init(&mut other_ahead, bad!(scene), 2.5, &LIMITS, 0),
                 slipfit_ahead_init(&mut other_ahead, &scene, 2.5, bad!(LIMITS), 0),
