@@ -112,6 +112,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "an interpreter has no time for so many steps")]
     fn gains_are_those_of_the_steady_filter() {
         for index in [1e-3, 0.02, 0.3, 1.0, 10.0] {
             let [closed, recursion] = [alpha_beta(index), by_recursion(index)];
@@ -129,6 +130,7 @@ mod tests {
 
     /// A mass that the drive pushes against a force that the model does not have: the force is found, and the speed is the measured one.
     #[test]
+    #[cfg_attr(miri, ignore = "an interpreter has no time for so many steps")]
     fn a_constant_force_is_found() {
         let (gain, mass, period) = (40.0, 0.08, 1e-3);
         let mut observer = observer();
