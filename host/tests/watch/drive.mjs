@@ -63,7 +63,7 @@ try {
   // A section that was closed stays closed.
   await page.click("#check summary");
   writeFileSync(scene, `${sound}# \n`);
-  await page.waitForFunction(() => document.querySelector("#status").textContent === "computes …");
+  await page.waitForFunction(() => document.querySelector("#status").textContent.startsWith("computes"));
   await page.waitForFunction(() => document.querySelector("#population figure svg"));
   assert.equal(await page.$eval("#check", (section) => section.open), false);
 
@@ -90,6 +90,7 @@ try {
   assert.equal(await page.$eval("#unit .verdict strong", (word) => word.textContent), "runs");
   assert.equal(readFileSync(scene, "utf8"), text);
 
+  assert.notEqual(await page.$eval("#status", (status) => status.textContent), "the program does not answer");
   await axe("light");
   await picture("light");
   await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: "dark" }]);

@@ -19,6 +19,7 @@
     const kept = old && old.player && old.dataset.moved ? { run: Number(old.dataset.run), frame: Number(old.dataset.frame) } : null;
     const focus = section.contains(document.activeElement);
     const control = focus && [...section.querySelectorAll("button, input, select")].indexOf(document.activeElement);
+    section.classList.remove("old");
     if (old && old.player) old.player.end();
     const place = window.scrollY;
     if (html !== undefined) section.innerHTML = html;
@@ -83,8 +84,8 @@
     input.value = value;
     const tell = (now) => { output.textContent = `${shown(now)}${unit ? ` ${unit}` : ""}`; input.setAttribute("aria-valuetext", output.textContent); };
     tell(value);
-    input.addEventListener("input", () => { const now = Number(Number(input.value).toPrecision(6)); tell(now); change(now); send(); });
-    if (writeBack) writeBack(make(row, "button", { type: "button", id: `write-${id}`, "aria-label": `write ${label} back` }, "write back"), input);
+    input.addEventListener("input", () => { const now = Number(Number(input.value).toPrecision(4)); tell(now); change(now); send(); });
+    if (writeBack) writeBack(make(row, "button", { type: "button", id: `write-${id}`, "aria-label": `write back ${label}` }, "write back"), input);
   };
 
   const gap = ({ name }) => /^(pin|joint)\..*#0$/.test(name);
@@ -131,11 +132,15 @@
 
   const events = new EventSource("events");
   const on = (name, take) => events.addEventListener(name, (event) => take(JSON.parse(event.data)));
-  on("status", (text) => { at("status").textContent = text; });
-  on("error", (text) => {
+  const bodies = () => [at("unit"), ...document.querySelectorAll("details > div")];
+  on("status", (text) => {
+    at("status").textContent = text;
+    if (text.startsWith("computes")) bodies().forEach((body) => body.classList.add("old"));
+  });
+  on("problem", (text) => {
     at("error").hidden = !text;
     if (at("error").textContent !== text) at("error").textContent = text;
-    document.body.classList.toggle("stale", Boolean(text));
+    if (text) bodies().forEach((body) => body.classList.add("old"));
   });
   on("unit", (section) => fill(at("unit"), section));
   for (const name of ["check", "tolerance", "population"]) {

@@ -104,12 +104,12 @@ impl Worker {
         drop(state);
         match &now.text {
             Err(why) => {
-                self.board.show("error", why.as_str());
+                self.board.show("problem", why.as_str());
                 self.board.show("status", "waits for a scene that can be read");
             }
             Ok(_) => {
                 self.board.show("knobs", json!({ "knobs": known, "wanted": now.wanted }));
-                self.board.show("status", "computes …");
+                self.board.show("status", "computes …; what has a bar on its left is not yet current");
                 self.waiting = self.tasks(&set, now.wanted.n);
             }
         }
@@ -168,11 +168,11 @@ impl Worker {
         match (section, done.success) {
             // A product without motion has no unit; whether the scene is sound is told by the check.
             ("unit", true) => {
-                self.board.show("error", "");
+                self.board.show("problem", "");
                 self.board.show("unit", json!({ "html": done.stdout }));
             }
             ("unit", false) => {
-                self.board.show("error", done.stderr.as_str());
+                self.board.show("problem", done.stderr.as_str());
                 self.no_unit = Some(done.stderr.clone());
             }
             ("check", false) => return self.failed(&done.stderr),
@@ -180,7 +180,7 @@ impl Worker {
             ("tolerance", false) => self.board.show(section, json!({ "text": "" })),
             (section, _) => {
                 if let (Some(why), "check") = (&self.no_unit, section) {
-                    self.board.show("error", "");
+                    self.board.show("problem", "");
                     self.board.show("unit", json!({ "text": why }));
                 }
                 let main = page.as_deref().and_then(main_of);
@@ -200,7 +200,7 @@ impl Worker {
     /// Shows why nothing more is computed until the file changes.
     fn failed(&mut self, why: &str) {
         self.waiting.clear();
-        self.board.show("error", why);
+        self.board.show("problem", why);
         self.board.show("status", "waits for a change");
     }
 }
