@@ -48,7 +48,12 @@ impl Stage {
             file.read_to_end(&mut bytes)?;
             std::io::Result::Ok(String::from_utf8_lossy(&bytes).into_owned())
         };
-        Ok(Some(Done { success: status.success(), stdout: text(&mut self.stdout)?, stderr: text(&mut self.stderr)? }))
+        let (stdout, mut stderr) = (text(&mut self.stdout)?, text(&mut self.stderr)?);
+        if !status.success() && stderr.trim().is_empty() {
+            let folder = std::env::temp_dir();
+            stderr = format!("error: a computation ended ({status}) without a message; is {} full?", folder.display());
+        }
+        Ok(Some(Done { success: status.success(), stdout, stderr }))
     }
 }
 
