@@ -1,12 +1,13 @@
 // Uses the page at the address of the first argument as a person would; the second is its scene. Ends with 1 where something is wrong.
 import { readFileSync, writeFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
 import assert from "node:assert/strict";
 import puppeteer from "puppeteer-core";
 
 const [url, scene] = process.argv.slice(2);
 const pictures = process.env.WATCH_PICTURES;
 const browser = await puppeteer.launch({
-  executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
+  executablePath: execFileSync("which", ["chromium"]).toString().trim(), args: ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"],
 });
 try {
   const page = await browser.newPage();
