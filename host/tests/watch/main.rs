@@ -17,7 +17,9 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// A running program and its page. It ends with its owner.
 pub struct Watched {
     child: Child,
+    /// Address of the page.
     pub url: String,
+    /// The file.
     pub scene: PathBuf,
     _folder: tempfile::TempDir,
 }
@@ -30,6 +32,7 @@ impl Drop for Watched {
 }
 
 impl Watched {
+    /// Watches a new file with this `text`.
     pub fn start(text: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let scene = folder.path().join("scene.toml");

@@ -43,28 +43,21 @@ pub fn with_value(text: &str, knob: &Knob, value: f64) -> String {
 
 /// What `--set` takes for these `values` of knobs, by name. A name that no knob has is left out.
 pub fn settings(text: &str, knobs: &[Knob], values: &BTreeMap<String, f64>) -> Vec<String> {
-    let mut changed: Vec<(Range<usize>, &str, Vec<(&Knob, f64)>)> = Vec::new();
-    for knob in knobs {
-        let Some(value) = values.get(&knob.name) else { continue };
-        match changed.iter_mut().find(|(whole, ..)| *whole == knob.whole) {
-            Some((.., of_key)) => of_key.push((knob, *value)),
-            None => {
-                let key = knob.name.split('#').next().unwrap_or_default();
-                changed.push((knob.whole.clone(), key, vec![(knob, *value)]));
-            }
-        }
-    }
-    let assignment = |(whole, key, mut of_key): (Range<usize>, &str, Vec<(&Knob, f64)>)| {
+    // The elements of a list are one value, and follow each other.
+    let of_keys = knobs.chunk_by(|one, next| one.whole == next.whole);
+    let assignment = |of_key: &[Knob]| {
+        let whole = of_key[0].whole.clone();
+        let key = of_key[0].name.split('#').next().unwrap_or_default();
+        let mut written = text[whole.clone()].to_owned();
+        let changed = of_key.iter().filter_map(|knob| Some((knob, values.get(&knob.name)?)));
         // From the last to the first, so that the places of the others hold.
-        of_key.sort_by_key(|(knob, _)| std::cmp::Reverse(knob.digits.start));
-        let start = whole.start;
-        let mut written = text[whole].to_owned();
-        for (knob, value) in of_key {
-            written.replace_range(knob.digits.start - start..knob.digits.end - start, &value.to_string());
+        let changed: Vec<_> = changed.rev().collect();
+        for (Knob { digits, .. }, value) in &changed {
+            written.replace_range(digits.start - whole.start..digits.end - whole.start, &value.to_string());
         }
-        format!("{key}={written}")
+        (!changed.is_empty()).then(|| format!("{key}={written}"))
     };
-    changed.into_iter().map(assignment).collect()
+    of_keys.filter_map(assignment).collect()
 }
 
 struct Collected<'a> {
