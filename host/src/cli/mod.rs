@@ -27,6 +27,7 @@ mod sweep;
 mod table;
 mod terminal;
 mod tolerance;
+mod watch;
 
 use std::{io::IsTerminal, process::ExitCode};
 
@@ -83,6 +84,7 @@ enum Command {
     Precision(precision::Arguments),
     Merge(merge::Arguments),
     Schema(schema::Arguments),
+    Watch(watch::Arguments),
 }
 
 /// Runs the command that the process was started with.
@@ -119,6 +121,7 @@ pub fn main() -> ExitCode {
         Some(Command::Precision(arguments)) => arguments.run(),
         Some(Command::Merge(arguments)) => arguments.run(),
         Some(Command::Schema(arguments)) => arguments.run(),
+        Some(Command::Watch(arguments)) => arguments.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -23,7 +23,7 @@ pub(super) struct Arguments {
 }
 
 /// The schema, which the tests write from the keys that the program reads.
-const SCHEMA: &str = include_str!("../../schema.json");
+pub(super) const SCHEMA: &str = include_str!("../../schema.json");
 
 impl Arguments {
     /// Runs the command.

@@ -28,12 +28,13 @@ const TARGETS: [&str; 6] = [
 const NEWLIB: &str = "newlib";
 
 /// Programs that tests run, and the Debian packages that have them.
-const TOOLS: [(&str, &str); 11] = [
+const TOOLS: [(&str, &str); 12] = [
     ("qemu-system-arm", "qemu-system-arm"),
     ("qemu-system-riscv32", "qemu-system-misc"),
     ("arm-none-eabi-gcc", "gcc-arm-none-eabi"),
     (NEWLIB, "libnewlib-arm-none-eabi"),
     ("chromium", "chromium"),
+    ("npm", "npm"),
     ("c++", "g++"),
     // Its library reads the headers of the crate `fmi`.
     ("clang", "clang"),

@@ -30,8 +30,8 @@
 //   plots   list of { name, unit, values }: curves over time
 //   events  list of { t, name }: moments to mark; may be absent
 //   from    from when on the greatest value of the first curve is its peak, at which the player opens; absent: from the start
-// The element of the figure has the property `player` with show(frame), choose(run), play(), pause() and the attributes
-// data-frame and data-run, which follow what is seen.
+// The element of the figure has the property `player` with show(frame), choose(run), play(), pause(), end() for a figure that
+// leaves the page, and the attributes data-frame and data-run, which follow what is seen. startPlayers() starts figures that were added.
 (() => {
   "use strict";
 
@@ -627,12 +627,16 @@
     };
     if (select) select.addEventListener("change", () => choose(Number(select.value)));
     let before;
-    window.addEventListener("beforeprint", () => { before = frame; pause(); show(restFrame(run)); });
-    window.addEventListener("afterprint", () => show(before));
-    figure.player = { show: (wanted) => { pause(); resting = false; show(wanted); }, choose, play, pause };
+    const ended = new AbortController();
+    const { signal } = ended;
+    window.addEventListener("beforeprint", () => { before = frame; pause(); show(restFrame(run)); }, { signal });
+    window.addEventListener("afterprint", () => show(before), { signal });
+    const end = () => { pause(); ended.abort(); };
+    figure.player = { show: (wanted) => { pause(); resting = false; show(wanted); }, choose, play, pause, end };
     choose(0);
   };
 
-  const start = () => document.querySelectorAll("figure.player").forEach(player);
+  const start = () => document.querySelectorAll("figure.player").forEach((figure) => figure.player || player(figure));
+  window.startPlayers = start;
   if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", start); else start();
 })();

@@ -21,6 +21,9 @@ pub use self::{
 use super::{palette::style_sheet, player, plot::PlotError};
 use crate::dynamics::{driven::DriveKind, sweep::Sweep};
 
+/// The style of pages, without colours and player.
+pub const PAGE_STYLE: &str = include_str!("page.css");
+
 /// What a report is made of.
 #[derive(Clone, Copy)]
 pub struct ReportInput<'a> {
@@ -134,7 +137,7 @@ fn page(title: &str, sections: &Markup, units: Option<&Units>) -> Markup {
                 title { (title) }
                 style {
                     (PreEscaped(style_sheet()))
-                    (PreEscaped(include_str!("page.css")))
+                    (PreEscaped(PAGE_STYLE))
                     @if plays { (player::STYLE) }
                 }
             }
