@@ -25,9 +25,9 @@ fn a_person_uses_the_page() {
     std::fs::write(&script, include_str!("drive.mjs")).unwrap();
     let driven = Command::new("node").arg(&script).args([page.url.as_str(), &page.scene.to_string_lossy()]).output();
     let driven = driven.expect("Node.js is needed: on Debian, apt-get install nodejs");
-    let told = String::from_utf8_lossy(&driven.stdout);
-    assert!(driven.status.success(), "{told}{}", String::from_utf8_lossy(&driven.stderr));
-    println!("{told}");
+    let printed = String::from_utf8_lossy(&driven.stdout);
+    assert!(driven.status.success(), "{printed}{}", String::from_utf8_lossy(&driven.stderr));
+    println!("{printed}");
     // What was written back by the keyboard alone.
     let text = std::fs::read_to_string(&page.scene).unwrap();
     assert!(text != SCENE && text != with_friction(0.1), "nothing was written back");

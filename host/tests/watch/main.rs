@@ -157,7 +157,7 @@ fn foreign_requests_are_refused() {
 }
 
 #[test]
-fn a_broken_a_long_and_a_deleted_scene_are_told_and_survived() {
+fn broken_long_and_deleted_scenes_are_reported_and_survived() {
     let page = Watched::start(SCENE);
     let mut events = page.events();
     events.until("unit", ">jammed<");

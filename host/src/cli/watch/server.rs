@@ -74,7 +74,7 @@ impl Server {
                 let (shared, address) = (self.shared.clone(), self.address);
                 // Without a thread the connection closes, and the browser tries again.
                 let _ = std::thread::Builder::new().spawn(move || {
-                    // Whoever goes away has nothing to be told.
+                    // An answer that nobody waits for is dropped.
                     let _ = shared.answer(stream, address);
                 });
             }

@@ -21,7 +21,7 @@ use crate::{
 
 /// How often the file is looked at. Looking is what works with every editor: some write in place, others rename or link.
 const INTERVAL: Duration = Duration::from_millis(10);
-/// Units of the production, in turn.
+/// Units of the samples of the production, one sample after the other.
 const UNITS: [u32; 3] = [64, 512, 4096];
 
 /// Follows a scene.
@@ -32,7 +32,7 @@ pub struct Worker {
     /// What runs, and what has not yet begun.
     running: Option<(Task, Stage)>,
     waiting: Vec<Task>,
-    /// Why there is no unit, until the check has told whether the scene is sound.
+    /// Why there is no unit, until the check says whether the scene is sound.
     no_unit: Option<String>,
 }
 
@@ -166,7 +166,7 @@ impl Worker {
     /// Shows what the stage of a `section` has come to.
     fn take(&mut self, section: &'static str, done: &Done, page: Option<String>) {
         match (section, done.success) {
-            // A product without motion has no unit; whether the scene is sound is told by the check.
+            // A product without motion has no unit; the check says whether the scene is sound.
             ("unit", true) => {
                 self.board.show("problem", "");
                 self.board.show("unit", json!({ "html": done.stdout }));
