@@ -27,7 +27,7 @@ use crate::{
     setup::Scene,
 };
 
-/// Checks a scene: degrees of freedom, gaps at a level, the level that closes each pair, warnings.
+/// Checks a scene: degrees of freedom, gaps at a level, levels that close them, warnings.
 ///
 /// Of a product without a slide or mechanism it prints the nominal values of the measures. Warnings do not change the exit code.
 #[derive(Args)]

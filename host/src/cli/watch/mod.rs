@@ -30,8 +30,8 @@ pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// Port of the page; a free one if not given.
-    #[arg(long, default_value_t = 0, hide_default_value = true)]
-    port: u16,
+    #[arg(long)]
+    port: Option<u16>,
     /// Prints the first part of the page and ends: what the command starts itself with.
     #[arg(long, hide = true, value_name = "N", allow_hyphen_values = true)]
     preview: Option<f64>,
@@ -55,8 +55,9 @@ impl Arguments {
             return Err(Failure::Input(format!("{}: only a file can be watched", path.display())));
         }
         let board = Arc::new(Board::default());
-        let server = Server::bind(self.port, path.clone(), board.clone());
-        let server = server.map_err(|error| Failure::Input(format!("--port {}: {error}", self.port)))?;
+        let port = self.port.unwrap_or(0);
+        let server = Server::bind(port, path.clone(), board.clone());
+        let server = server.map_err(|error| Failure::Input(format!("--port {port}: {error}")))?;
         let url = server.url();
         server.start();
         print(&format!("{url}\nshows {} as it is saved; Ctrl-C ends it", path.display()))?;
