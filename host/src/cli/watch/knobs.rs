@@ -18,6 +18,8 @@ pub struct Knob {
     pub unit: String,
     /// Bounds that the schema states.
     pub bounds: [Option<f64>; 2],
+    /// Whether it is the mean of a gap of a pin or a joint.
+    pub is_gap: bool,
     /// Where the digits are, in bytes of the text.
     #[serde(skip)]
     digits: Range<usize>,
@@ -133,7 +135,8 @@ impl Collected<'_> {
         let bound = |end| bound(property, end).filter(|_| unit == of_key);
         let bounds = [bound("minimum"), bound("maximum")];
         let start = span.start + offset;
-        self.knobs.push(Knob { name, value: number, unit, bounds, digits: start..start + digits.len(), whole });
+        let is_gap = is_gap(&name);
+        self.knobs.push(Knob { name, value: number, unit, bounds, is_gap, digits: start..start + digits.len(), whole });
     }
 
     /// The `schema` itself, or the definition that it refers to.
@@ -142,6 +145,14 @@ impl Collected<'_> {
         let name = reference.into_iter().find_map(|one| one.as_str()?.strip_prefix("#/definitions/"));
         name.map_or_else(|| schema.clone(), |name| self.schema["definitions"][name].clone())
     }
+}
+
+/// Whether the number `name` is the mean of a gap: the first one of such a key of a pin or a joint.
+fn is_gap(name: &str) -> bool {
+    let mut words = name.split('.');
+    let of = words.next();
+    let key = words.nth(1).and_then(|key| key.strip_suffix("#0"));
+    matches!(of, Some("pin" | "joint")) && matches!(key, Some("clearance" | "left" | "right" | "rail" | "wall"))
 }
 
 /// How many bytes of `text` are a number at its start.
@@ -192,6 +203,11 @@ mod tests {
                 "pin.front left.left#1"
             ]
         );
+        let gaps: Vec<_> = knobs(TEXT).into_iter().filter(|knob| knob.is_gap).map(|knob| knob.name).collect();
+        assert_eq!(gaps, ["pin.front left.left#0"]);
+        let crank = knobs(crate::scene::shipped("slider-crank").unwrap());
+        let gaps: Vec<_> = crank.into_iter().filter(|knob| knob.is_gap).map(|knob| knob.name).collect();
+        assert_eq!(gaps, ["joint.big end.clearance#0"]);
         assert_eq!((knob("slide.mass").value, knob("slide.mass").unit.as_str()), (81.8, "g"));
         assert_eq!(knob("friction.coefficient").bounds, [Some(0.0), Some(100.0)]);
     }

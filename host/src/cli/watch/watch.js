@@ -88,8 +88,6 @@
     if (writeBack) writeBack(make(row, "button", { type: "button", id: `write-${id}`, "aria-label": `write back ${label}` }, "write back"), input);
   };
 
-  const gap = ({ name }) => /^(pin|joint)\..*#0$/.test(name);
-
   const draw = () => {
     const focused = document.activeElement && document.activeElement.id;
     const open = at("rows").querySelector("details")?.open;
@@ -155,7 +153,7 @@
       Object.assign(wanted, now.wanted);
       Object.keys(wanted.set).forEach((name) => chosen.add(name));
       // Each gap, where they are few.
-      const gaps = knobs.filter(gap);
+      const gaps = knobs.filter((knob) => knob.is_gap);
       if (gaps.length <= 6) gaps.forEach(({ name }) => chosen.add(name));
     }
     if (!same) draw();
