@@ -6,7 +6,7 @@
 //!
 //! The missing force acts along the drive. So it is applied as a change of the command: gain times command is a force.
 //!
-//! Errors of speed and of force are tracked as place and speed are by an alpha-beta filter, whose gains for white noise have a closed form:
+//! Errors of speed and of force are tracked as position and speed are by an alpha-beta filter, whose gains for white noise have a closed form:
 //! Kalata, "The tracking index: a generalized parameter for alpha-beta and alpha-beta-gamma target trackers", IEEE Transactions on Aerospace
 //! and Electronic Systems 20 (1984). The drive and the contacts damp what the filter leaves undamped, so that corrections fade faster still.
 

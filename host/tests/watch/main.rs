@@ -242,7 +242,7 @@ fn values_are_tried_and_written_back_with_comments_kept() {
 }
 
 #[test]
-fn an_interrupt_ends_it_with_its_workers() {
+fn an_interrupt_ends_it() {
     use nix::{sys::signal, unistd::Pid};
     let mut page = Watched::start(SCENE);
     page.events().until("unit", ">jammed<");

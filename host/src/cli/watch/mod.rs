@@ -60,7 +60,7 @@ impl Arguments {
         let server = server.map_err(|error| Failure::Input(format!("--port {port}: {error}")))?;
         let url = server.url();
         server.start();
-        print(&format!("{url}\nshows {} as it is saved; Ctrl-C ends it", path.display()))?;
+        print(&format!("{url}\nshows {} anew after each save; Ctrl-C ends it", path.display()))?;
         Worker::new(self.scene, board).work();
         Ok(())
     }

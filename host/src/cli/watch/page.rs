@@ -4,26 +4,19 @@ use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::show::{palette::style_sheet, player, report::PAGE_STYLE};
+use crate::show::report::head;
 
 /// The page of the file `scene`.
 pub fn page(scene: &Path) -> Markup {
     let name = scene.file_name().unwrap_or(scene.as_os_str()).to_string_lossy();
+    let more = html! {
+        link rel="icon" href="data:,";
+        style { (PreEscaped(include_str!("watch.css"))) }
+    };
     html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                link rel="icon" href="data:,";
-                title { (name) }
-                style {
-                    (PreEscaped(style_sheet()))
-                    (PreEscaped(PAGE_STYLE))
-                    (player::STYLE)
-                    (PreEscaped(include_str!("watch.css")))
-                }
-            }
+            (head(&name, true, &more))
             body {
                 main {
                     h1 { (name) }

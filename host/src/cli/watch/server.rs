@@ -148,7 +148,7 @@ impl Shared {
         // Held to the end, so that two pages do not write at once.
         let mut state = self.board.state();
         let shown = state.text.clone().ok_or("the scene cannot be read")?;
-        // The text as it is in the file: one with a mark of its encoding, or in another one, is not written.
+        // The bytes of the file: a text with a mark of its encoding, or in another one, is not written.
         let text = std::fs::read_to_string(&self.scene).map_err(|error| error.to_string())?;
         if text != shown {
             let why = match text_of(&self.scene) {

@@ -21,9 +21,6 @@ pub use self::{
 use super::{palette::style_sheet, player, plot::PlotError};
 use crate::dynamics::{driven::DriveKind, sweep::Sweep};
 
-/// The style of pages, without colours and player.
-pub const PAGE_STYLE: &str = include_str!("page.css");
-
 /// What a report is made of.
 #[derive(Clone, Copy)]
 pub struct ReportInput<'a> {
@@ -125,22 +122,30 @@ pub fn measured_page(
     ))
 }
 
+/// The head of a page: its title, the style of all pages and, if it `plays`, of the player, and what `more` it has.
+pub fn head(title: &str, plays: bool, more: &Markup) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            title { (title) }
+            style {
+                (PreEscaped(style_sheet()))
+                (PreEscaped(include_str!("page.css")))
+                @if plays { (player::STYLE) }
+            }
+            (more)
+        }
+    }
+}
+
 /// A page with these sections, and with what moves the player of `units`.
 fn page(title: &str, sections: &Markup, units: Option<&Units>) -> Markup {
     let plays = units.is_some_and(|units| units.player.is_some());
     html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (title) }
-                style {
-                    (PreEscaped(style_sheet()))
-                    (PreEscaped(PAGE_STYLE))
-                    @if plays { (player::STYLE) }
-                }
-            }
+            (head(title, plays, &html! {}))
             body {
                 main { h1 { (title) } (sections) }
                 @if plays { script { (player::SCRIPT) } }
