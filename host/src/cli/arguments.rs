@@ -16,7 +16,7 @@ use slipfit_tolerance::product::Product;
 use super::{
     encoding, endings,
     failure::{Failure, refused},
-    terminal::warn,
+    terminal::{collecting, collector, warn},
 };
 use crate::{
     mechanism::{ByDrive, Mechanism},
@@ -216,6 +216,7 @@ impl ThreadArguments {
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
         let threads = self.threads.map_or(0, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
-        Ok(pool.install(work))
+        let collector = collector();
+        Ok(pool.install(|| collecting(collector, work)))
     }
 }

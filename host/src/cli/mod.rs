@@ -29,15 +29,13 @@ mod terminal;
 mod tolerance;
 mod watch;
 
-use std::{io::IsTerminal, process::ExitCode};
+use std::{ffi::OsString, io::IsTerminal, process::ExitCode, sync::PoisonError};
 
 use clap::{CommandFactory, Parser, Subcommand};
 use slipfit_system::interrupt;
 
-use self::{
-    failure::Failure,
-    terminal::{print, tell, write_out},
-};
+use self::terminal::{Collector, collecting, print, tell, write_out};
+pub use self::{failure::Failure, terminal::Answer};
 
 /// From a drawing's tolerances to a flashed force table.
 ///
@@ -89,48 +87,79 @@ enum Command {
 
 /// Runs the command that the process was started with.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    ExitCode::from(run(std::env::args_os()))
+}
+
+/// Runs the command line `arguments`, the program's name first, on the terminal. The exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         // Help and version are asked for; a full disk must not pass unnoticed.
         Err(asked) if !asked.use_stderr() => {
             let text = asked.render();
             let text = if std::io::stdout().is_terminal() { text.ansi().to_string() } else { text.to_string() };
-            return ExitCode::from(u8::from(write_out(&[&text]).is_err()));
+            return u8::from(write_out(&[&text]).is_err());
         }
-        Err(wrong) => wrong.exit(),
+        Err(wrong) => {
+            let _ = wrong.print();
+            return 2;
+        }
     };
     if let Err(error) = interrupt::install() {
         tell(&format!("error: {error}"));
-        return ExitCode::from(1);
+        return 1;
     }
-    let result = match cli.command {
-        None => print(&Cli::command().render_help().to_string()),
-        Some(Command::Run(arguments)) => arguments.run(),
-        Some(Command::Check(arguments)) => arguments.run(),
-        Some(Command::Import(arguments)) => arguments.run(),
-        Some(Command::Capability(arguments)) => arguments.run(),
-        Some(Command::Identify(arguments)) => arguments.run(),
-        Some(Command::Tolerance(arguments)) => arguments.run(),
-        Some(Command::Allocate(arguments)) => arguments.run(),
-        Some(Command::Simulate(arguments)) => arguments.run(),
-        Some(Command::Sweep(arguments)) => arguments.run(),
-        Some(Command::Population(arguments)) => arguments.run(),
-        Some(Command::Table(arguments)) => arguments.run(),
-        Some(Command::Kernel(arguments)) => arguments.run(),
-        Some(Command::Fmu(arguments)) => arguments.run(),
-        Some(Command::Precision(arguments)) => arguments.run(),
-        Some(Command::Merge(arguments)) => arguments.run(),
-        Some(Command::Schema(arguments)) => arguments.run(),
-        Some(Command::Watch(arguments)) => arguments.run(),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
+    match cli.execute() {
+        Ok(()) => 0,
         Err(failure) => {
             match &failure {
                 Failure::Scene(error) => tell(&error.render(std::io::stderr().is_terminal())),
                 other => tell(&format!("error: {other}")),
             }
-            ExitCode::from(if matches!(failure, Failure::Work(_)) { 1 } else { 2 })
+            if matches!(failure, Failure::Work(_)) { 1 } else { 2 }
+        }
+    }
+}
+
+/// Runs a command for a program that wants its result as a value: `arguments` follow the program's name, with `--json` where the
+/// command has it. Nothing is printed.
+///
+/// # Errors
+/// [`Failure`], also for arguments that the command does not have.
+pub fn call(arguments: impl IntoIterator<Item = OsString>) -> Result<Answer, Failure> {
+    let arguments = std::iter::once("slipfit".into()).chain(arguments);
+    let cli = Cli::try_parse_from(arguments).map_err(|wrong| {
+        let text = wrong.render().to_string();
+        let text = text.split("\n\nUsage:").next().unwrap_or_default();
+        Failure::Input(text.trim().trim_start_matches("error: ").to_owned())
+    })?;
+    let collector = Collector::default();
+    collecting(Some(collector.clone()), || cli.execute())?;
+    let mut answer = collector.lock().unwrap_or_else(PoisonError::into_inner);
+    Ok(std::mem::take(&mut *answer))
+}
+
+impl Cli {
+    fn execute(self) -> Result<(), Failure> {
+        match self.command {
+            None => print(&Self::command().render_help().to_string()),
+            Some(Command::Run(arguments)) => arguments.run(),
+            Some(Command::Check(arguments)) => arguments.run(),
+            Some(Command::Import(arguments)) => arguments.run(),
+            Some(Command::Capability(arguments)) => arguments.run(),
+            Some(Command::Identify(arguments)) => arguments.run(),
+            Some(Command::Tolerance(arguments)) => arguments.run(),
+            Some(Command::Allocate(arguments)) => arguments.run(),
+            Some(Command::Simulate(arguments)) => arguments.run(),
+            Some(Command::Sweep(arguments)) => arguments.run(),
+            Some(Command::Population(arguments)) => arguments.run(),
+            Some(Command::Table(arguments)) => arguments.run(),
+            Some(Command::Kernel(arguments)) => arguments.run(),
+            Some(Command::Fmu(arguments)) => arguments.run(),
+            Some(Command::Precision(arguments)) => arguments.run(),
+            Some(Command::Merge(arguments)) => arguments.run(),
+            Some(Command::Schema(arguments)) => arguments.run(),
+            Some(Command::Watch(arguments)) => arguments.run(),
         }
     }
 }

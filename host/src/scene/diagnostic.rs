@@ -84,6 +84,19 @@ pub const COMMAND_LINE: &str = "command line";
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneError(Vec<Report>);
 
+/// Where a problem is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place<'a> {
+    /// The scene file, or [`COMMAND_LINE`].
+    pub file: &'a str,
+    /// Line, from 1 on.
+    pub line: usize,
+    /// Column in characters, from 1 on.
+    pub column: usize,
+    /// What is allowed there; may be empty.
+    pub allowed: &'a str,
+}
+
 #[derive(Clone, Debug, PartialEq)]
 struct Report {
     problem: Problem,
@@ -111,6 +124,16 @@ impl SceneError {
     /// All that is wrong, in the order of the text.
     pub fn problems(&self) -> impl Iterator<Item = &Problem> {
         self.0.iter().map(|report| &report.problem)
+    }
+
+    /// Where each problem is and what is allowed there, in the order of [`problems`](Self::problems).
+    pub fn places(&self) -> impl Iterator<Item = Place<'_>> {
+        self.0.iter().map(|report| {
+            let before = &report.text[..report.span.start];
+            let line = before.bytes().filter(|byte| *byte == b'\n').count() + 1;
+            let column = before.chars().rev().take_while(|letter| *letter != '\n').count() + 1;
+            Place { file: &report.name, line, column, allowed: &report.allowed }
+        })
     }
 
     /// All that is wrong, each with what is allowed there.

@@ -9,6 +9,11 @@ pub fn request() -> bool {
     REQUESTED.swap(true, Ordering::Relaxed)
 }
 
+/// Forgets the request, once the work that it was for has stopped.
+pub fn clear() {
+    REQUESTED.store(false, Ordering::Relaxed);
+}
+
 /// Whether somebody asked to stop.
 pub fn requested() -> bool {
     REQUESTED.load(Ordering::Relaxed)
