@@ -1,74 +1,224 @@
-//! A column of numbers that numpy and others share without copying.
+//! A column of values that numpy and data frames share without copying.
 
-use std::ffi::{c_int, c_void};
-
-use pyo3::{
-    exceptions::{PyBufferError, PyIndexError},
-    ffi,
-    prelude::*,
+use std::{
+    collections::HashMap,
+    ffi::{CStr, c_int, c_void},
+    sync::Arc,
 };
 
-/// Numbers (f64) that do not change. `numpy.asarray(column)` shares their memory.
-#[pyclass(frozen, module = "slipfit._slipfit", eq)]
-#[derive(PartialEq)]
-pub struct Column(Box<[f64]>, [isize; 2]);
+use arrow_array::{
+    Array, ArrayRef, BooleanArray, DictionaryArray, Float64Array, Int32Array, StringArray, UInt64Array,
+    ffi::{FFI_ArrowArray, FFI_ArrowSchema, to_ffi},
+    types::Int32Type,
+};
+use arrow_buffer::NullBuffer;
+use arrow_schema::Field;
+use pyo3::{
+    IntoPyObjectExt,
+    exceptions::{PyBufferError, PyIndexError, PyValueError},
+    ffi,
+    prelude::*,
+    types::{PyCapsule, PyList},
+};
+use slipfit::show::columns::{self, Values, Words};
+
+/// Values that do not change: numbers, whole numbers, true and false, or words.
+///
+/// numpy.asarray(column) shares the memory of numbers, which are NaN where there is none. Libraries that take Arrow arrays share
+/// it, too, and see what is missing as null.
+#[pyclass(frozen, sequence, module = "slipfit")]
+pub struct Column {
+    /// Its name, as the first line of a CSV file has it.
+    #[pyo3(get)]
+    name: String,
+    /// Its unit, "" if there is none.
+    #[pyo3(get)]
+    unit: String,
+    array: ArrayRef,
+    /// Number of values and bytes of each, as buffers state them.
+    shape: [isize; 2],
+}
+
+/// Bytes of a number.
+const BYTES: usize = size_of::<f64>();
 
 impl Column {
-    /// Of these numbers.
-    pub fn of(numbers: Vec<f64>) -> Self {
-        let count = numbers.len() as isize;
-        Self(numbers.into(), [count, size_of::<f64>() as isize])
+    /// A column of the program.
+    pub fn of(column: columns::Column) -> Self {
+        let columns::Column { name, unit, values } = column;
+        let array: ArrayRef = match values {
+            Values::Numbers(numbers) => Arc::new(numbers_of(numbers)),
+            Values::Counts(numbers) => Arc::new(UInt64Array::from(numbers)),
+            Values::Flags(flags) => Arc::new(BooleanArray::from(flags)),
+            Values::Words(Words { kinds, rows }) => {
+                let kinds = Arc::new(StringArray::from(kinds));
+                // Every row has a kind, so that this cannot fail.
+                Arc::new(DictionaryArray::<Int32Type>::new(Int32Array::from(rows), kinds))
+            }
+        };
+        let shape = [array.len() as isize, BYTES as isize];
+        Self { name, unit, array, shape }
     }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Name, kind and unit.
+    pub fn field(&self) -> Field {
+        let unit = (!self.unit.is_empty()).then(|| ("unit".to_owned(), self.unit.clone()));
+        let kind = self.array.data_type().clone();
+        Field::new(&self.name, kind, true).with_metadata(unit.into_iter().collect::<HashMap<_, _>>())
+    }
+
+    /// Its values.
+    pub fn array(&self) -> ArrayRef {
+        self.array.clone()
+    }
+
+    /// The numbers in memory, and the letter by which buffers call their kind.
+    fn numbers(&self) -> Option<(*const c_void, &'static CStr)> {
+        let any = self.array.as_any();
+        let float = any.downcast_ref().map(|array: &Float64Array| (array.values().as_ptr().cast(), c"d"));
+        float.or_else(|| any.downcast_ref().map(|array: &UInt64Array| (array.values().as_ptr().cast(), c"Q")))
+    }
+
+    fn value<'py>(&self, py: Python<'py>, row: usize) -> PyResult<Bound<'py, PyAny>> {
+        let any = self.array.as_any();
+        if self.array.is_null(row) {
+            return Ok(py.None().into_bound(py));
+        }
+        if let Some(array) = any.downcast_ref::<Float64Array>() {
+            return array.value(row).into_bound_py_any(py);
+        }
+        if let Some(array) = any.downcast_ref::<UInt64Array>() {
+            return array.value(row).into_bound_py_any(py);
+        }
+        if let Some(array) = any.downcast_ref::<BooleanArray>() {
+            return array.value(row).into_bound_py_any(py);
+        }
+        let words = any.downcast_ref::<DictionaryArray<Int32Type>>();
+        let word = words.and_then(|words| {
+            let kinds = words.values().as_any().downcast_ref::<StringArray>()?;
+            Some(kinds.value(words.keys().value(row) as usize))
+        });
+        word.into_bound_py_any(py)
+    }
+}
+
+impl PartialEq for Column {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name && self.unit == other.unit && self.array.as_ref() == other.array.as_ref()
+    }
+}
+
+/// Numbers, those that are NaN as missing ones.
+fn numbers_of(numbers: Vec<f64>) -> Float64Array {
+    let missing = numbers.iter().any(|number| number.is_nan());
+    let nulls = missing.then(|| NullBuffer::from_iter(numbers.iter().map(|number| !number.is_nan())));
+    Float64Array::new(numbers.into(), nulls)
+}
+
+/// The kinds of values that a column is made from.
+#[derive(FromPyObject)]
+enum Given {
+    Flags(Vec<bool>),
+    Counts(Vec<u64>),
+    Numbers(Vec<Option<f64>>),
+    Words(Vec<Option<String>>),
 }
 
 #[pymethods]
 impl Column {
+    /// Numbers, whole numbers, true and false, or words; None where there is none.
     #[new]
-    fn new(numbers: Vec<f64>) -> Self {
-        Self::of(numbers)
+    #[pyo3(signature = (values, name = "", unit = ""))]
+    fn new(values: &Bound<'_, PyAny>, name: &str, unit: &str) -> PyResult<Self> {
+        let allowed = || {
+            PyValueError::new_err("a column has numbers, whole numbers, true and false, or words; allowed is one kind")
+        };
+        let values = match values.extract().map_err(|_| allowed())? {
+            Given::Flags(flags) if !flags.is_empty() => Values::Flags(flags),
+            Given::Flags(_) => Values::Numbers(Vec::new()),
+            Given::Counts(counts) => Values::Counts(counts),
+            Given::Numbers(numbers) => {
+                Values::Numbers(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
+            }
+            Given::Words(words) => Values::Words(words.into_iter().collect()),
+        };
+        Ok(Self::of(columns::Column { name: name.into(), unit: unit.into(), values }))
     }
 
     fn __len__(&self) -> usize {
-        self.0.len()
+        self.array.len()
     }
 
-    fn __getitem__(&self, index: isize) -> PyResult<f64> {
-        let count = self.0.len() as isize;
-        let at = if index < 0 { index + count } else { index };
-        let found = usize::try_from(at).ok().and_then(|at| self.0.get(at));
-        found.copied().ok_or_else(|| PyIndexError::new_err(format!("{index} is not in a column of {count}")))
+    fn __getitem__<'py>(&self, py: Python<'py>, index: isize) -> PyResult<Bound<'py, PyAny>> {
+        let count = self.array.len();
+        let at = if index < 0 { index + count as isize } else { index };
+        match usize::try_from(at).ok().filter(|at| *at < count) {
+            Some(at) => self.value(py, at),
+            None => Err(PyIndexError::new_err(format!("{index} is not in a column of {count}"))),
+        }
     }
 
     fn __repr__(&self) -> String {
-        format!("<Column of {} numbers>", self.0.len())
+        format!("<Column {:?} of {} values>", self.name, self.array.len())
     }
 
-    /// The numbers as a list.
-    fn tolist(&self) -> Vec<f64> {
-        self.0.to_vec()
+    fn __eq__(&self, other: &Self) -> bool {
+        self == other
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyAny>, (Vec<f64>,)) {
-        (slf.get_type().into_any(), (slf.get().tolist(),))
+    /// The values as a list, None where there is none.
+    pub fn tolist<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let values = (0..self.array.len()).map(|row| self.value(py, row)).collect::<PyResult<Vec<_>>>()?;
+        PyList::new(py, values)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let (py, own) = (slf.py(), slf.get());
+        (slf.get_type(), (own.tolist(py)?, &own.name, &own.unit)).into_bound_py_any(py)
+    }
+
+    /// The Arrow PyCapsule interface: schema and array. Nothing is copied.
+    #[pyo3(signature = (requested_schema = None))]
+    fn __arrow_c_array__<'py>(
+        &self,
+        py: Python<'py>,
+        requested_schema: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, PyCapsule>, Bound<'py, PyCapsule>)> {
+        // Whoever wants another kind casts by itself, as the interface allows.
+        drop(requested_schema);
+        let failed = |error: arrow_schema::ArrowError| PyValueError::new_err(error.to_string());
+        let (array, _) = to_ffi(&self.array.to_data()).map_err(failed)?;
+        let schema = FFI_ArrowSchema::try_from(&self.field()).map_err(failed)?;
+        Ok((capsule(py, schema, c"arrow_schema")?, capsule::<FFI_ArrowArray>(py, array, c"arrow_array")?))
     }
 
     /// # Safety
     /// Python passes a `view` to fill in.
     unsafe fn __getbuffer__(slf: Bound<'_, Self>, view: *mut ffi::Py_buffer, flags: c_int) -> PyResult<()> {
+        let own = slf.get();
+        let Some((start, kind)) = own.numbers() else {
+            return Err(PyBufferError::new_err(
+                "a column of words, or of true and false, has no buffer: tolist() has them",
+            ));
+        };
         if view.is_null() || flags & ffi::PyBUF_WRITABLE == ffi::PyBUF_WRITABLE {
             return Err(PyBufferError::new_err("a column is read-only"));
         }
-        let Self(numbers, shape) = slf.get();
         let wanted = |flag: c_int| flags & flag == flag;
-        // SAFETY: `view` is valid by the protocol. Numbers and shape live as long as the object, which `view` owns.
+        let [count, stride] = own.shape.each_ref().map(|number| std::ptr::from_ref(number).cast_mut());
+        // SAFETY: `view` is valid by the protocol. Values and shape live as long as the object, which `view` owns.
         unsafe {
-            (*view).buf = numbers.as_ptr().cast_mut().cast::<c_void>();
-            (*view).len = size_of_val(&**numbers) as isize;
-            (*view).itemsize = size_of::<f64>() as isize;
+            (*view).buf = start.cast_mut();
+            (*view).len = own.shape[0] * own.shape[1];
+            (*view).itemsize = own.shape[1];
             (*view).readonly = 1;
             (*view).ndim = 1;
-            (*view).format = if wanted(ffi::PyBUF_FORMAT) { c"d".as_ptr().cast_mut() } else { std::ptr::null_mut() };
-            let [count, stride] = shape.each_ref().map(|number| std::ptr::from_ref(number).cast_mut());
+            (*view).format = if wanted(ffi::PyBUF_FORMAT) { kind.as_ptr().cast_mut() } else { std::ptr::null_mut() };
             (*view).shape = if wanted(ffi::PyBUF_ND) { count } else { std::ptr::null_mut() };
             (*view).strides = if wanted(ffi::PyBUF_STRIDES) { stride } else { std::ptr::null_mut() };
             (*view).suboffsets = std::ptr::null_mut();
@@ -77,4 +227,13 @@ impl Column {
         }
         Ok(())
     }
+}
+
+/// Something that Arrow's libraries take over by a pointer, under its name.
+pub fn capsule<'py, T: 'static + Send>(
+    py: Python<'py>,
+    value: T,
+    name: &'static CStr,
+) -> PyResult<Bound<'py, PyCapsule>> {
+    PyCapsule::new_with_value(py, value, name)
 }

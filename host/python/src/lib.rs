@@ -1,32 +1,38 @@
-//! The compiled part of the Python module `slipfit`: commands as functions, columns as buffers.
+//! The compiled part of the Python module `slipfit`: commands as functions, columns that numpy and data frames share.
 //!
 //! It computes nothing itself. Each command goes through [`slipfit::cli::call`], like those of the command line.
 #![allow(unsafe_code, reason = "Python's buffers are pointers; column.rs alone has them")]
 
 mod column;
+mod columns;
 mod value;
 
 use std::{
     ffi::OsString,
     sync::{
         Mutex, PoisonError,
-        mpsc::{RecvTimeoutError, channel},
+        mpsc::{Receiver, RecvTimeoutError, channel},
     },
     thread,
     time::Duration,
 };
 
-use pyo3::{prelude::*, types::PyList};
+use pyo3::{call::PyCallArgs, prelude::*, types::PyList};
 use slipfit::{
-    cli::{self, Answer, Failure},
+    cli::{
+        self, Failure,
+        call::{Answer, Call, Progress, Want},
+    },
     system::interrupt,
 };
 
-/// How often a running command looks for Ctrl-C.
+use self::{column::Column, columns::Columns};
+
+/// How often a running command looks for Ctrl-C and tells how far it is.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// An exception of the module `slipfit._errors` with these arguments.
-fn error<'py>(py: Python<'py>, name: &str, arguments: impl pyo3::call::PyCallArgs<'py>) -> PyErr {
+fn error<'py>(py: Python<'py>, name: &str, arguments: impl PyCallArgs<'py>) -> PyErr {
     let class = py.import("slipfit._errors").and_then(|errors| errors.getattr(name));
     match class.and_then(|class| class.call1(arguments)) {
         Ok(exception) => PyErr::from_value(exception),
@@ -47,53 +53,98 @@ fn raise(py: Python<'_>, failure: &Failure) -> PyErr {
     }
 }
 
-/// Runs a command and returns `(value, text, warnings)`: the object that `--json` prints, or `None`; other output; warnings.
+/// What a command returns: the object that `--json` prints, or `None`; other output; warnings; columns; draws.
+type Returned = (Py<PyAny>, String, Vec<String>, Option<Columns>, Option<Columns>);
+
+/// Runs a command, whose name and options are `arguments`.
 ///
-/// The GIL is released. Ctrl-C stops all commands that run in this process and raises `KeyboardInterrupt`.
+/// `scene` is the text of the scene, if it is not in a file. `columns` and `draws` say whether those of `--csv` and `--draws` are
+/// wanted. `progress` is called with what is done, how much of it, and of how much (None if that is not known); whatever it raises
+/// stops the command.
+///
+/// Other Python threads go on. Ctrl-C stops all commands that run in this process and raises KeyboardInterrupt.
 #[pyfunction]
-fn call(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<(Py<PyAny>, String, Vec<String>)> {
+#[pyo3(signature = (arguments, scene = None, columns = false, draws = false, progress = None))]
+fn call(
+    py: Python<'_>,
+    arguments: Vec<OsString>,
+    scene: Option<String>,
+    columns: bool,
+    draws: bool,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<Returned> {
+    let wanted = [(Want::Columns, columns), (Want::Draws, draws)];
+    let wanted = wanted.into_iter().filter(|(_, wanted)| *wanted).map(|(want, _)| want).collect();
+    let call = Call::new(arguments, scene, wanted);
     let (send, receive) = channel();
+    let running = call.clone();
     let work = thread::Builder::new().name("slipfit".into()).spawn(move || {
         // Nobody listens only if the interpreter is gone.
-        let _ = send.send(cli::call(arguments));
+        let _ = send.send(running.run());
     })?;
-    // A receiver alone cannot be looked at from where the GIL is released.
+    let mut told = None;
+    let result = wait(py, receive, || {
+        py.check_signals()?;
+        let now = call.progress();
+        match (&progress, &now) {
+            (Some(tell), Some(Progress { what, done, of })) if now != told => {
+                tell.call1((what, *done, *of))?;
+                told = now;
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    });
+    // A panic has been reported where the channel closed without a result.
+    let panicked = py.detach(|| work.join().is_err());
+    match result? {
+        _ if panicked => Err(error(py, "WorkError", ("slipfit stopped by an internal error; see standard error",))),
+        None => Err(error(py, "WorkError", ("slipfit stopped without a result",))),
+        Some(Err(failure)) => Err(raise(py, &failure)),
+        Some(Ok(Answer { value: found, text, warnings, columns, draws })) => {
+            let found = found.map(|found| value::to_python(py, &found)).transpose()?;
+            let of =
+                |columns: Option<slipfit::show::columns::Columns>| columns.map(|all| Columns::of(py, all)).transpose();
+            let value = found.map_or_else(|| py.None(), Bound::unbind);
+            Ok((value, text, warnings, of(columns)?, of(draws)?))
+        }
+    }
+}
+
+/// What a thread sends; `None` if it ends without. Meanwhile `look` is called again and again; where it fails, the work is stopped.
+fn wait<T: Send>(py: Python<'_>, receive: Receiver<T>, mut look: impl FnMut() -> PyResult<()>) -> PyResult<Option<T>> {
+    // A receiver alone cannot be shared with where Python's lock is released.
     let receive = Mutex::new(receive);
-    let wait = || receive.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK);
-    let mut signal = None;
+    let next = || receive.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK);
+    let mut stopped = None;
     let result = loop {
-        match py.detach(wait) {
+        match py.detach(next) {
             Ok(result) => break Some(result),
             Err(RecvTimeoutError::Disconnected) => break None,
-            Err(RecvTimeoutError::Timeout) if signal.is_none() => {
-                if let Err(raised) = py.check_signals() {
-                    signal = Some(raised);
+            Err(RecvTimeoutError::Timeout) if stopped.is_none() => {
+                if let Err(raised) = look() {
+                    stopped = Some(raised);
                     interrupt::request();
                 }
             }
             Err(RecvTimeoutError::Timeout) => {}
         }
     };
-    // A panic has been reported where the channel closed without a result.
-    drop(work.join());
-    if let Some(raised) = signal {
-        interrupt::clear();
-        return Err(raised);
-    }
-    match result {
-        Some(Ok(Answer { value: found, text, warnings })) => {
-            let found = found.map(|found| value::to_python(py, &found)).transpose()?;
-            Ok((found.map_or_else(|| py.None(), Bound::unbind), text, warnings))
+    match stopped {
+        None => Ok(result),
+        Some(raised) => {
+            interrupt::clear();
+            Err(raised)
         }
-        Some(Err(failure)) => Err(raise(py, &failure)),
-        None => Err(error(py, "WorkError", ("slipfit stopped by an internal error; see standard error",))),
     }
 }
 
 /// Runs the command line `arguments`, the program's name first. Returns the exit code.
+///
+/// `program` starts the command line again, for commands that work in processes of their own.
 #[pyfunction]
-fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
-    py.detach(|| cli::run(arguments))
+fn main(py: Python<'_>, arguments: Vec<OsString>, program: Vec<OsString>) -> u8 {
+    py.detach(|| cli::run(arguments, &program))
 }
 
 /// The names of the shipped scenes.
@@ -102,11 +153,38 @@ fn shipped(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     PyList::new(py, slipfit::scene::SHIPPED.iter().map(|(name, _)| *name))
 }
 
-#[pymodule]
+/// An argument: its name, what its value is called (`None` if it has none), help, whether it may be repeated, and whether it goes by
+/// its place.
+type Argument = (String, Option<String>, String, bool, bool);
+
+/// The names of the commands, what each does, and its arguments.
+#[pyfunction]
+fn commands() -> Vec<(String, String, Vec<Argument>)> {
+    let text = |text: Option<&clap::builder::StyledStr>| text.map(ToString::to_string).unwrap_or_default();
+    let described = |argument: &clap::Arg| {
+        let value = argument.get_action().takes_values().then(|| {
+            let names = argument.get_value_names().unwrap_or_default();
+            names.first().map(ToString::to_string).unwrap_or_default()
+        });
+        let repeated = matches!(argument.get_action(), clap::ArgAction::Append);
+        let name = argument.get_long().unwrap_or(argument.get_id().as_str());
+        let help = text(argument.get_long_help().or(argument.get_help()));
+        (name.to_owned(), value, help, repeated, argument.is_positional())
+    };
+    let command = |command: &clap::Command| {
+        let all = command.get_arguments().filter(|argument| !argument.is_hide_set()).map(described).collect();
+        (command.get_name().to_owned(), text(command.get_long_about().or(command.get_about())), all)
+    };
+    cli::command().get_subcommands().map(command).collect()
+}
+
+#[pymodule(gil_used = false)]
 fn _slipfit(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add_class::<column::Column>()?;
+    module.add_class::<Column>()?;
+    module.add_class::<Columns>()?;
     module.add_function(wrap_pyfunction!(call, module)?)?;
     module.add_function(wrap_pyfunction!(main, module)?)?;
+    module.add_function(wrap_pyfunction!(commands, module)?)?;
     module.add_function(wrap_pyfunction!(shipped, module)?)
 }

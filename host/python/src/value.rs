@@ -7,9 +7,7 @@ use pyo3::{
 };
 use serde_json::Value;
 
-use crate::column::Column;
-
-/// `value` as dict, list, str, number, bool or None. Samples become a dict of columns by their names.
+/// `value` as dict, list, str, number, bool or None.
 ///
 /// # Errors
 /// Where Python has no memory left.
@@ -33,32 +31,9 @@ pub fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyA
         Value::Object(entries) => {
             let dict = PyDict::new(py);
             for (key, one) in entries {
-                let names = entries.get("columns").and_then(Value::as_array);
-                match (key.as_str(), one, names) {
-                    ("samples", Value::Object(columns), _) => {
-                        let samples = PyDict::new(py);
-                        for (name, numbers) in columns {
-                            samples.set_item(name, column(numbers.as_array().into_iter().flatten()))?;
-                        }
-                        dict.set_item(key, samples)?;
-                    }
-                    ("samples", Value::Array(rows), Some(names)) => {
-                        let samples = PyDict::new(py);
-                        for (k, name) in names.iter().enumerate() {
-                            let numbers = rows.iter().map(|row| row.get(k).unwrap_or(&Value::Null));
-                            samples.set_item(name.as_str().unwrap_or_default(), column(numbers))?;
-                        }
-                        dict.set_item(key, samples)?;
-                    }
-                    _ => dict.set_item(key, to_python(py, one)?)?,
-                }
+                dict.set_item(key, to_python(py, one)?)?;
             }
             Ok(dict.into_any())
         }
     }
-}
-
-/// Numbers, NaN where there is none.
-fn column<'a>(numbers: impl Iterator<Item = &'a Value>) -> Column {
-    Column::of(numbers.map(|number| number.as_f64().unwrap_or(f64::NAN)).collect())
 }

@@ -14,9 +14,9 @@ use slipfit_system::files;
 use slipfit_tolerance::product::Product;
 
 use super::{
-    encoding, endings,
+    call, encoding, endings,
     failure::{Failure, refused},
-    terminal::{collecting, collector, warn},
+    terminal::warn,
 };
 use crate::{
     mechanism::{ByDrive, Mechanism},
@@ -140,6 +140,9 @@ impl SceneArguments {
     pub fn text(&self) -> Result<(String, Cow<'static, str>), Failure> {
         let path = &self.scene;
         let name = path.to_string_lossy();
+        if let Some(text) = call::scene() {
+            return Ok((name.into_owned(), text.into()));
+        }
         // A folder is no scene: where there is one of that name, the shipped one is meant.
         if let Some(text) = shipped(&name).filter(|_| !path.exists() || path.is_dir()) {
             return Ok((format!("{name}.toml"), text.into()));
@@ -216,7 +219,7 @@ impl ThreadArguments {
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
         let threads = self.threads.map_or(0, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(anyhow::Error::from)?;
-        let collector = collector();
-        Ok(pool.install(|| collecting(collector, work)))
+        let call = call::current();
+        Ok(pool.install(|| call::within(call, work)))
     }
 }

@@ -3,6 +3,7 @@
 mod allocate;
 mod arguments;
 mod by_one_drive;
+pub mod call;
 mod capability;
 mod check;
 mod encoding;
@@ -29,13 +30,13 @@ mod terminal;
 mod tolerance;
 mod watch;
 
-use std::{ffi::OsString, io::IsTerminal, process::ExitCode, sync::PoisonError};
+use std::{ffi::OsString, io::IsTerminal, process::ExitCode};
 
 use clap::{CommandFactory, Parser, Subcommand};
 use slipfit_system::interrupt;
 
-use self::terminal::{Collector, collecting, print, tell, write_out};
-pub use self::{failure::Failure, terminal::Answer};
+pub use self::failure::Failure;
+use self::terminal::{print, tell, write_out};
 
 /// From a drawing's tolerances to a flashed force table.
 ///
@@ -87,11 +88,18 @@ enum Command {
 
 /// Runs the command that the process was started with.
 pub fn main() -> ExitCode {
-    ExitCode::from(run(std::env::args_os()))
+    ExitCode::from(run(std::env::args_os(), &[]))
 }
 
-/// Runs the command line `arguments`, the program's name first, on the terminal. The exit code.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+/// The arguments and their help, for manual pages and completions of shells.
+pub fn command() -> clap::Command {
+    Cli::command()
+}
+
+/// Runs the command line `arguments`, the program's name first, on the terminal. Returns the exit code.
+///
+/// `program` is what starts this program again, for commands that work in processes of their own; if it is empty, what runs now.
+pub fn run(arguments: impl IntoIterator<Item = OsString>, program: &[OsString]) -> u8 {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         // Help and version are asked for; a full disk must not pass unnoticed.
@@ -109,7 +117,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         tell(&format!("error: {error}"));
         return 1;
     }
-    match cli.execute() {
+    let result = match cli.command {
+        Some(Command::Watch(arguments)) => arguments.run(program),
+        _ => cli.execute(),
+    };
+    match result {
         Ok(()) => 0,
         Err(failure) => {
             match &failure {
@@ -119,24 +131,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             if matches!(failure, Failure::Work(_)) { 1 } else { 2 }
         }
     }
-}
-
-/// Runs a command for a program that wants its result as a value: `arguments` follow the program's name, with `--json` where the
-/// command has it. Nothing is printed.
-///
-/// # Errors
-/// [`Failure`], also for arguments that the command does not have.
-pub fn call(arguments: impl IntoIterator<Item = OsString>) -> Result<Answer, Failure> {
-    let arguments = std::iter::once("slipfit".into()).chain(arguments);
-    let cli = Cli::try_parse_from(arguments).map_err(|wrong| {
-        let text = wrong.render().to_string();
-        let text = text.split("\n\nUsage:").next().unwrap_or_default();
-        Failure::Input(text.trim().trim_start_matches("error: ").to_owned())
-    })?;
-    let collector = Collector::default();
-    collecting(Some(collector.clone()), || cli.execute())?;
-    let mut answer = collector.lock().unwrap_or_else(PoisonError::into_inner);
-    Ok(std::mem::take(&mut *answer))
 }
 
 impl Cli {
@@ -159,7 +153,7 @@ impl Cli {
             Some(Command::Precision(arguments)) => arguments.run(),
             Some(Command::Merge(arguments)) => arguments.run(),
             Some(Command::Schema(arguments)) => arguments.run(),
-            Some(Command::Watch(arguments)) => arguments.run(),
+            Some(Command::Watch(arguments)) => arguments.run(&[]),
         }
     }
 }

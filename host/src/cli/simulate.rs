@@ -12,6 +12,7 @@ use slipfit_system::files;
 
 use super::{
     arguments::{Moving, SceneArguments, one_of},
+    call::{self, Want},
     check::{self, GapReport, gap_reports},
     failure::Failure,
     mechanism::{self, Wanted},
@@ -257,9 +258,7 @@ impl Arguments {
         let tried = |run: &mut Run| with_step_tried(&scene, &n, run.trust).map(|trust| run.trust = trust);
         let of_controller = if by_controller { Some(&mut run) } else { controller.as_mut().and_then(Option::as_mut) };
         of_controller.map(tried).transpose()?;
-        if let Some(path) = &self.csv {
-            files::write(path, &export::trajectory_csv(&run.trajectory)?)?;
-        }
+        call::columns(Want::Columns, self.csv.as_deref(), || Ok(export::of_trajectory(&run.trajectory)))?;
         if let Some(path) = &self.plot {
             let svg = unit_over_time(&run.trajectory, &scene.title, shown).map_err(anyhow::Error::from)?;
             files::write(path, svg.as_bytes())?;

@@ -13,6 +13,7 @@ use slipfit_tolerance::number::{fixed, level, or_dash};
 use super::{
     arguments::{DriveArguments, Moving, SceneArguments, ThreadArguments},
     by_one_drive::{ByOneDrive, FINER, why_undecided},
+    call::{self, Want},
     failure::Failure,
     simulate::{ControllerArguments, LengthArguments},
     terminal::{given, print, print_json, progress, text_table, warn},
@@ -29,7 +30,7 @@ use crate::{
     },
     scene::Override,
     setup::Scene,
-    show::{export::sweep_csv, figure::verdicts},
+    show::{export::of_sweep, figure::verdicts},
 };
 
 /// Simulates a slide or a mechanism at many tolerance levels, or values of any key: where does it run, crawl, jam?
@@ -152,9 +153,7 @@ impl Arguments {
             worst.trust = with_step_tried(scene, &[worst.n; CONTACTS], worst.trust)?;
             worst.doubts = worst.trust.warning().into_iter().collect();
         }
-        if let Some(path) = &self.csv {
-            files::write(path, &sweep_csv(&swept)?)?;
-        }
+        call::columns(Want::Columns, self.csv.as_deref(), || Ok(of_sweep(&swept)))?;
         if let Some(path) = &self.plot {
             files::write(path, verdicts(&swept, subject.title()).map_err(anyhow::Error::from)?.as_bytes())?;
         }

@@ -1,61 +1,18 @@
 //! What is shown on the terminal: texts, tables, JSON, warnings, progress.
 
 use std::{
-    cell::RefCell,
     io::{ErrorKind, Write},
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, PoisonError},
 };
 
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 
-use super::failure::Failure;
-
-/// What a command returns to a program that calls it, instead of printing it.
-#[derive(Debug, Default)]
-pub struct Answer {
-    /// What `--json` prints.
-    pub value: Option<serde_json::Value>,
-    /// Other text for standard output.
-    pub text: String,
-    /// Warnings that are not in `value`.
-    pub warnings: Vec<String>,
-}
-
-/// Where the output of a called command is collected.
-pub type Collector = Arc<Mutex<Answer>>;
-
-thread_local! {
-    static COLLECTOR: RefCell<Option<Collector>> = const { RefCell::new(None) };
-}
-
-/// The collector of the command that runs on this thread; `None` if it prints.
-pub fn collector() -> Option<Collector> {
-    COLLECTOR.with_borrow(Clone::clone)
-}
-
-/// Runs `work` with the output of this thread going to `collector`, or to the terminal if there is none.
-pub fn collecting<T>(collector: Option<Collector>, work: impl FnOnce() -> T) -> T {
-    /// Puts the earlier collector back, also if `work` panics.
-    struct Restore(Option<Collector>);
-    impl Drop for Restore {
-        fn drop(&mut self) {
-            COLLECTOR.set(self.0.take());
-        }
-    }
-    let _restore = Restore(COLLECTOR.replace(collector));
-    work()
-}
-
-/// Gives `add` the answer that is being collected. Whether there is one.
-fn collect(add: impl FnOnce(&mut Answer)) -> bool {
-    collector().map(|all| add(&mut all.lock().unwrap_or_else(PoisonError::into_inner))).is_some()
-}
+use super::{call, failure::Failure};
 
 /// A progress bar with an estimate, on standard error, if that is a terminal.
 pub fn progress(what: &'static str, length: usize) -> ProgressBar {
-    if collector().is_some() {
-        return ProgressBar::hidden();
+    if let Some(call) = call::current() {
+        return call.bar(what, Some(length as u64));
     }
     let bar = ProgressBar::new(length as u64);
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}{left}") {
@@ -75,8 +32,8 @@ pub fn progress(what: &'static str, length: usize) -> ProgressBar {
 
 /// Counts what has been done of work whose end is not known.
 pub fn counter(what: &'static str) -> ProgressBar {
-    if collector().is_some() {
-        return ProgressBar::hidden();
+    if let Some(call) = call::current() {
+        return call.bar(what, None);
     }
     let bar = ProgressBar::no_length();
     if let Ok(style) = ProgressStyle::with_template("{spinner} {human_pos} {msg}, {elapsed}") {
@@ -94,7 +51,8 @@ pub fn print(text: &str) -> Result<(), Failure> {
 
 /// Writes `texts` to standard output. A reader that has closed its pipe, like `head`, has read what it wants: that is no error.
 pub fn write_out(texts: &[&str]) -> std::io::Result<()> {
-    if collect(|answer| answer.text.extend(texts.iter().copied())) {
+    if let Some(call) = call::current() {
+        call.answer().text.extend(texts.iter().copied());
         return Ok(());
     }
     let mut out = std::io::stdout().lock();
@@ -112,7 +70,8 @@ const JSON_VERSION: u32 = 2;
 
 /// Tells a person of `warnings`, on standard error whatever the command.
 pub fn warn(warnings: &[String]) {
-    if collect(|answer| answer.warnings.extend_from_slice(warnings)) {
+    if let Some(call) = call::current() {
+        call.answer().warnings.extend_from_slice(warnings);
         return;
     }
     for warning in warnings {
@@ -135,9 +94,8 @@ struct Versioned<'a, T> {
 /// Prints `value`, an object, as JSON with the version of the format before its fields.
 pub fn print_json<T: serde::Serialize>(value: &T) -> Result<(), Failure> {
     let versioned = Versioned { json_version: JSON_VERSION, value };
-    if collector().is_some() {
-        let value = serde_json::to_value(versioned).map_err(anyhow::Error::from)?;
-        collect(|answer| answer.value = Some(value));
+    if let Some(call) = call::current() {
+        call.answer().value = Some(serde_json::to_value(versioned).map_err(anyhow::Error::from)?);
         return Ok(());
     }
     print(&serde_json::to_string_pretty(&versioned).map_err(anyhow::Error::from)?)

@@ -1,150 +1,114 @@
-//! Results as CSV.
+//! Which columns results have, and tables of points as CSV.
 
-use std::{io, io::Write};
-
-use slipfit_core::{clearance::GapClass, slide::ABSENT};
+use slipfit_core::slide::ABSENT;
 use slipfit_tolerance::number::ten_digits;
 
+use super::columns::{Column, Columns, Values};
 use crate::{
     dynamics::{
         driven::DriveKind,
-        outcome::{Moment, Outcome},
-        sweep::Sweep,
+        outcome::Outcome,
+        sweep::{Level, Sweep},
         trajectory::Trajectory,
     },
     mechanism::Samples,
-    population::{Unit, unit::Fault},
+    population::{Unit, subject::Subject, unit::Fault},
     quality::{precision, stability},
 };
 
-/// Time, speed and force along the drive, displacement of the centre of mass; ten digits.
-///
-/// # Errors
-/// Those of the writer, none in memory.
-pub fn trajectory_csv(trajectory: &Trajectory) -> anyhow::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["t (s)", "vz (m/s)", "force (N)", "x (m)", "y (m)", "z (m)"])?;
-    for (i, t) in trajectory.t.iter().enumerate() {
-        let Trajectory { vz, force, x, y, z, .. } = trajectory;
-        let columns = [*t, vz[i], force[i], x[i], y[i], z[i]];
-        writer.write_record(columns.map(ten_digits))?;
-    }
-    Ok(writer.into_inner()?)
+/// Time, speed and force along the drive, displacement of the centre of mass.
+pub fn of_trajectory(trajectory: &Trajectory) -> Columns {
+    let Trajectory { t, vz, force, x, y, z, .. } = trajectory;
+    let all = [("t (s)", t), ("vz (m/s)", vz), ("force (N)", force), ("x (m)", x), ("y (m)", y), ("z (m)", z)];
+    Columns(all.map(|(name, values)| Column::numbers(name, values.iter().copied())).into())
 }
 
-/// Rows under named columns, ten digits; empty where a value is not a number.
-///
-/// # Errors
-/// Those of the writer, none in memory.
-pub fn rows_csv(samples: &Samples) -> anyhow::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(&samples.columns)?;
-    for row in &samples.rows {
-        writer.write_record(row.iter().map(|x| if x.is_nan() { String::new() } else { ten_digits(*x) }))?;
-    }
-    Ok(writer.into_inner()?)
+/// Samples of a mechanism.
+pub fn of_samples(samples: &Samples) -> Columns {
+    let column = |(k, name): (usize, &String)| Column::numbers(name, samples.rows.iter().map(|row| row[k]));
+    Columns(samples.columns.iter().enumerate().map(column).collect())
 }
 
-/// Units of a population as CSV, one line each: number, tightness, figures and gaps, ten digits; empty where there is none.
-pub struct UnitRows<W: Write>(csv::Writer<W>);
-
-impl<W: Write> UnitRows<W> {
-    /// Into `writer`, with the heading for a drive of this `kind` and gaps of these names.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn new(writer: W, kind: DriveKind, gaps: &[String]) -> io::Result<Self> {
-        let [breakaway, peak, settled, speed, end, travel, ..] = figure_names(kind);
-        let figures = ["unit", "tightness", breakaway, peak, settled, speed, end, travel, "verdict", "at_desk"]
-            .map(str::to_owned);
-        let gaps = gaps.iter().map(|name| format!("{name} (m)"));
-        let mut writer = csv::Writer::from_writer(writer);
-        writer.write_record(figures.into_iter().chain(gaps))?;
-        Ok(Self(writer))
+/// Units of a population of `subject`, a row each: number, tightness, figures and gaps.
+pub fn of_units(subject: &dyn Subject, units: &[Unit]) -> Columns {
+    let column = |name: &str, unit: &str, value: fn(&Unit) -> Option<f64>| {
+        Column::optional(name, units.iter().map(value)).in_unit(unit)
+    };
+    // A unit without a run has no figures; one that cannot be assembled stands still.
+    fn runs(unit: &Unit, value: f64) -> Option<f64> {
+        matches!(unit.outcome.fault, None | Some(Fault::Unassembled)).then_some(value)
     }
-
-    /// Adds a unit of this `tightness`.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn add(&mut self, tightness: f64, unit: &Unit) -> io::Result<()> {
-        let Unit { number, gaps, outcome } = unit;
-        let optional = |value: Option<f64>| value.map_or(String::new(), ten_digits);
-        // A unit without a run has no figures; one that cannot be assembled stands still.
-        let runs = matches!(outcome.fault, None | Some(Fault::Unassembled));
-        let figure = |value: f64| optional(runs.then_some(value));
-        let own = [
-            number.to_string(),
-            ten_digits(tightness),
-            optional(outcome.breakaway),
-            optional(outcome.peak_force),
-            optional(outcome.settled_force),
-            figure(outcome.final_velocity),
-            figure(outcome.end.t),
-            figure(outcome.end.z),
-            outcome.verdict.to_string(),
-            outcome.at_desk.to_string(),
-        ];
-        let gaps = gaps.iter().map(|gap| optional((*gap != ABSENT).then_some(*gap)));
-        Ok(self.0.write_record(own.into_iter().chain(gaps))?)
-    }
-
-    /// The writer, with everything in it.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn finish(self) -> io::Result<W> {
-        self.0.into_inner().map_err(csv::IntoInnerError::into_error)
-    }
+    let figures: [fn(&Unit) -> Option<f64>; 6] = [
+        |unit| unit.outcome.breakaway,
+        |unit| unit.outcome.peak_force,
+        |unit| unit.outcome.settled_force,
+        |unit| runs(unit, unit.outcome.final_velocity),
+        |unit| runs(unit, unit.outcome.end.t),
+        |unit| runs(unit, unit.outcome.end.z),
+    ];
+    let mut all = vec![
+        Column::new("unit", Values::Counts(units.iter().map(|unit| unit.number).collect())),
+        Column::numbers("tightness", units.iter().map(|unit| subject.tightness(&unit.gaps))),
+    ];
+    all.extend(
+        figure_names(subject.kind()).into_iter().zip(figures).map(|((name, unit), value)| column(name, unit, value)),
+    );
+    all.push(Column::words("verdict", units.iter().map(|unit| Some(unit.outcome.verdict.to_string()))));
+    all.push(Column::new("at_desk", Values::Flags(units.iter().map(|unit| unit.outcome.at_desk).collect())));
+    all.extend(subject.gap_names().iter().enumerate().map(|(k, name)| {
+        let gap = |unit: &Unit| (unit.gaps[k] != ABSENT).then_some(unit.gaps[k]);
+        Column::optional(format!("{name} (m)"), units.iter().map(gap))
+    }));
+    Columns(all)
 }
 
-/// Names of a run's figures, with their units; of a drive of this `kind`.
-pub fn figure_names(kind: DriveKind) -> [&'static str; 9] {
+/// Names of a run's figures and their units; of a drive of this `kind`.
+pub fn figure_names(kind: DriveKind) -> [(&'static str, &'static str); 9] {
+    let choose = |name: [&'static str; 2], unit: [&'static str; 2]| {
+        (kind.choose(name[0], name[1]), kind.choose(unit[0], unit[1]))
+    };
+    let (effort, travel) = (["N", "N·m"], ["m", "rad"]);
     [
-        "breakaway_s",
-        kind.choose("peak_force_N", "peak_torque_N_m"),
-        kind.choose("settled_force_N", "settled_torque_N_m"),
-        kind.choose("final_velocity_m_per_s", "final_velocity_rad_per_s"),
-        "end_s",
-        kind.choose("travel_m", "travel_rad"),
-        kind.choose("tips_m", "tips_rad"),
-        kind.choose("slows_m", "slows_rad"),
-        kind.choose("stops_m", "stops_rad"),
+        ("breakaway_s", "s"),
+        choose(["peak_force_N", "peak_torque_N_m"], effort),
+        choose(["settled_force_N", "settled_torque_N_m"], effort),
+        choose(["final_velocity_m_per_s", "final_velocity_rad_per_s"], ["m/s", "rad/s"]),
+        ("end_s", "s"),
+        choose(["travel_m", "travel_rad"], travel),
+        choose(["tips_m", "tips_rad"], travel),
+        choose(["slows_m", "slows_rad"], travel),
+        choose(["stops_m", "stops_rad"], travel),
     ]
 }
 
-/// The figures of an `outcome` in the order of [`figure_names`], ten digits; empty where there is none.
-pub fn figures(outcome: &Outcome) -> [String; 9] {
-    let optional = |x: Option<f64>| x.map_or_else(String::new, ten_digits);
-    let place = |moment: Option<Moment>| optional(moment.map(|moment| moment.z));
-    [
-        optional(outcome.breakaway),
-        optional(outcome.peak_force),
-        optional(outcome.settled_force),
-        ten_digits(outcome.final_velocity),
-        ten_digits(outcome.end.t),
-        ten_digits(outcome.end.z),
-        place(outcome.tips),
-        place(outcome.slows),
-        place(outcome.stops),
-    ]
+/// The figures of `outcomes` as columns of the [`figure_names`].
+pub fn of_figures<'a>(kind: DriveKind, outcomes: impl Iterator<Item = &'a Outcome> + Clone) -> Vec<Column> {
+    let values: [fn(&Outcome) -> Option<f64>; 9] = [
+        |outcome| outcome.breakaway,
+        |outcome| outcome.peak_force,
+        |outcome| outcome.settled_force,
+        |outcome| Some(outcome.final_velocity),
+        |outcome| Some(outcome.end.t),
+        |outcome| Some(outcome.end.z),
+        |outcome| outcome.tips.map(|moment| moment.z),
+        |outcome| outcome.slows.map(|moment| moment.z),
+        |outcome| outcome.stops.map(|moment| moment.z),
+    ];
+    let column = |((name, unit), value)| Column::optional(name, outcomes.clone().map(value)).in_unit(unit);
+    figure_names(kind).into_iter().zip(values).map(column).collect()
 }
 
-/// Figures and the class of each gap over n, one line a level; empty where there is none.
-///
-/// # Errors
-/// Those of the writer, none in memory.
-pub fn sweep_csv(sweep: &Sweep) -> anyhow::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let gaps = sweep.gaps.iter().map(String::as_str);
-    writer.write_record(["n"].into_iter().chain(figure_names(sweep.kind)).chain(["verdict"]).chain(gaps))?;
-    for level in &sweep.levels {
-        let class = |class: &Option<GapClass>| class.map_or_else(String::new, |class| class.to_string());
-        let verdict = level.outcome.verdict.to_string();
-        let own = [ten_digits(level.n)].into_iter().chain(figures(&level.outcome)).chain([verdict]);
-        writer.write_record(own.chain(level.classes.iter().map(class)))?;
-    }
-    Ok(writer.into_inner()?)
+/// Figures and the class of each gap over n, a row a level.
+pub fn of_sweep(sweep: &Sweep) -> Columns {
+    let Sweep { levels, gaps, kind } = sweep;
+    let mut all = vec![Column::numbers("n", levels.iter().map(|level| level.n))];
+    all.extend(of_figures(*kind, levels.iter().map(|level| &level.outcome)));
+    all.push(Column::words("verdict", levels.iter().map(|level| Some(level.outcome.verdict.to_string()))));
+    all.extend(gaps.iter().enumerate().map(|(k, gap)| {
+        let class = |level: &Level| level.classes[k].map(|class| class.to_string());
+        Column::words(gap, levels.iter().map(class))
+    }));
+    Columns(all)
 }
 
 /// Errors and run times, one line a point; empty where a run blew up.

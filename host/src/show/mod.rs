@@ -4,6 +4,7 @@ pub(crate) mod bars;
 pub mod capability;
 pub mod causes;
 pub(crate) mod chart;
+pub mod columns;
 pub mod drawing;
 pub mod export;
 pub mod figure;

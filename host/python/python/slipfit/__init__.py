@@ -6,24 +6,29 @@
 'runs'
 """
 
+from slipfit import results
+from slipfit._commands import capability, merge
 from slipfit._errors import InputError, Problem, SceneError, SlipfitError, WorkError
 from slipfit._result import Result
-from slipfit._scene import Scene, capability, import_qif, merge, schema
-from slipfit._slipfit import Column, __version__, shipped
+from slipfit._scene import Scene, Watch, import_qif, schema
+from slipfit._slipfit import Column, Columns, __version__, shipped
 
 __all__ = [
     "Column",
+    "Columns",
     "InputError",
     "Problem",
     "Result",
     "Scene",
     "SceneError",
     "SlipfitError",
+    "Watch",
     "WorkError",
     "__version__",
     "capability",
     "import_qif",
     "merge",
+    "results",
     "schema",
     "shipped",
 ]

@@ -4,27 +4,38 @@ from __future__ import annotations
 
 import html
 import importlib
+import types
+import typing
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, Union
 
-from slipfit._slipfit import Column
+from slipfit._slipfit import Column, Columns
 
 
-class Result(Mapping[str, Any]):
+class Result:
     """What a command found: the fields of its ``--json`` output, with the same names, units and numbers.
 
-    Fields are items and attributes: ``result["title"]`` is ``result.title``. ``samples``, where there are some, are a dict of
-    :class:`Column`. ``warnings`` is a list of texts. Results can be pickled and copied.
+    Fields are items and attributes: ``result["title"]`` is ``result.title``, and ``list(result)`` are the names. Where a field is an
+    object it is a result, too. A field that a scene of another kind would have is None as an attribute. Results can be compared,
+    pickled and copied.
     """
 
-    def __init__(self, fields: Mapping[str, Any]) -> None:
-        self._fields = dict(fields)
+    #: Pictures (SVG) by their names, if they were asked for.
+    pictures: dict[str, str]
+
+    def __init__(self, fields: Mapping[str, Any], pictures: Mapping[str, str] | None = None) -> None:
+        kinds = _kinds(type(self))
+        self._fields = {name: _converted(value, kinds.get(name, Any)) for name, value in fields.items()}
+        self.pictures = dict(pictures or {})
 
     def __getitem__(self, key: str) -> Any:
         return self._fields[key]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._fields)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._fields
 
     def __len__(self) -> int:
         return len(self._fields)
@@ -33,47 +44,112 @@ class Result(Mapping[str, Any]):
         # Not of a result that is being unpickled and has no fields yet.
         if name != "_fields" and name in self._fields:
             return self._fields[name]
-        raise AttributeError(f"the result has no field {name!r}")
+        if not name.startswith("_") and name in _kinds(type(self)):
+            return None
+        raise AttributeError(f"the result has no field {name!r}, it has {', '.join(self.__dict__.get('_fields', ()))}")
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._fields]
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Result) and self._fields == other._fields
+
     def __repr__(self) -> str:
-        return f"<Result {self._fields.get('title', '')!r}: {', '.join(self._fields)}>"
+        title = f" {self._fields['title']!r}" if "title" in self._fields else ""
+        return f"<{type(self).__name__}{title}: {', '.join(self._fields)}>"
 
     def _repr_html_(self) -> str:
         rows = (
-            f"<tr><th>{html.escape(key)}</th><td>{html.escape(_short(value))}</td></tr>"
-            for key, value in self._fields.items()
+            f"<tr><th style='text-align:left'>{html.escape(name)}</th><td style='text-align:left'>{html.escape(_short(value))}</td></tr>"
+            for name, value in self._fields.items()
         )
-        return f"<table>{''.join(rows)}</table>"
+        return "".join([*self.pictures.values(), "<table>", *rows, "</table>"])
 
     def to_dict(self) -> dict[str, Any]:
-        """The fields as a new dict; columns become lists."""
+        """The fields as dicts, lists, texts and numbers."""
         plain: dict[str, Any] = _plain(self._fields)
         return plain
 
-    def plot(self) -> Any:
-        """Draws the samples over time with matplotlib, which has to be installed. Returns the figure."""
+    def plot(self, *names: str) -> Any:
+        """Draws columns over the first one with matplotlib, which has to be installed: those of these ``names``, or all numbers.
+
+        Returns the figure.
+        """
+        columns = self._fields.get("columns")
+        if not isinstance(columns, Columns):
+            raise AttributeError("the result has no columns to draw")
         plt: Any = importlib.import_module("matplotlib.pyplot")
-        samples: dict[str, Column] = self._fields["samples"]
-        (_, time), *rest = sorted(samples.items(), key=lambda item: not item[0].startswith("t"))
-        figure, axes = plt.subplots(len(rest), sharex=True, squeeze=False, figsize=(6, 1.6 * len(rest)))
-        for axis, (name, column) in zip(axes[:, 0], rest):
-            axis.plot(memoryview(time), memoryview(column))
-            axis.set_ylabel(name)
-        axes[-1, 0].set_xlabel("t (s)")
+        first, *rest = columns.values()
+        drawn = [columns[name] for name in names] or [column for column in rest if isinstance(column[0], float)]
+        figure, axes = plt.subplots(len(drawn), sharex=True, squeeze=False, figsize=(7, 1.8 * len(drawn)), layout="constrained")
+        for axis, column in zip(axes[:, 0], drawn):
+            axis.plot(memoryview(first), memoryview(column))
+            axis.set_ylabel(_labelled(column))
+        axes[-1, 0].set_xlabel(_labelled(first))
         return figure
 
 
+def _labelled(column: Column) -> str:
+    stated = not column.unit or column.name.endswith(f"({column.unit})")
+    return column.name if stated else f"{column.name} ({column.unit})"
+
+
+#: The types of the fields of each class.
+_KINDS: dict[type, dict[str, Any]] = {}
+
+
+def _kinds(kind: type) -> dict[str, Any]:
+    """The types of a result's fields."""
+    if kind not in _KINDS:
+        _KINDS[kind] = {name: of for name, of in typing.get_type_hints(kind).items() if name != "pictures"}
+    return _KINDS[kind]
+
+
+def _converted(value: Any, kind: Any) -> Any:
+    """``value`` with the objects in it as results."""
+    origin, arguments = typing.get_origin(kind), typing.get_args(kind)
+    if origin in (Union, types.UnionType):
+        fitting = [one for one in arguments if _fits(value, one)]
+        return _converted(value, fitting[0] if fitting else Any)
+    if isinstance(value, list):
+        return [_converted(one, arguments[0] if origin is list else Any) for one in value]
+    if isinstance(value, dict):
+        if origin is dict:
+            return {name: _converted(one, arguments[1]) for name, one in value.items()}
+        return (kind if isinstance(kind, type) and issubclass(kind, Result) else Result)(value)
+    return float(value) if kind is float and isinstance(value, int) else value
+
+
+def _fits(value: Any, kind: Any) -> bool:
+    origin = typing.get_origin(kind) or kind
+    if isinstance(value, dict):
+        return origin is dict or (isinstance(origin, type) and issubclass(origin, Result))
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return isinstance(origin, type) and isinstance(value, origin)
+    return origin in (int, float)
+
+
 def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
+    if isinstance(value, Columns):
+        return value.to_dict()
+    if isinstance(value, Result):
+        return _plain(value._fields)
+    if isinstance(value, dict):
         return {key: _plain(one) for key, one in value.items()}
     if isinstance(value, list):
         return [_plain(one) for one in value]
-    return value.tolist() if isinstance(value, Column) else value
+    return value
 
 
 def _short(value: Any) -> str:
-    text = ", ".join(value) if isinstance(value, dict) else str(value)
+    if isinstance(value, Columns):
+        text = f"{value.rows} rows of {', '.join(value)}"
+    elif isinstance(value, Result):
+        text = _short(value._fields)
+    elif isinstance(value, dict):
+        text = ", ".join(f"{name} {_short(one)}" for name, one in value.items())
+    elif isinstance(value, list):
+        text = ", ".join(_short(one) for one in value)
+    else:
+        text = f"{value:.6g}" if isinstance(value, float) else str(value)
     return text if len(text) <= 200 else text[:199] + "…"

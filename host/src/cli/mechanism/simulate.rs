@@ -11,6 +11,7 @@ use slipfit_tolerance::number::{fixed, level, or_dash, ten_digits};
 use super::{DriveReport, GapReport, Wanted, gap_reports, levels, shown, units};
 use crate::{
     cli::{
+        call::{self, Want},
         failure::Failure,
         terminal::{print, print_json, text_table, warn},
     },
@@ -22,7 +23,7 @@ use crate::{
     population::{mechanism::mechanism_of, production::Production},
     setup::ControllerSpec,
     show::{
-        export::rows_csv,
+        export::of_samples,
         figure::{columns_over_time, word},
         player,
         report::{Figure, unit_page},
@@ -109,9 +110,7 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
         Some(Controller { run: Some(run), .. }) if wanted.by_controller => run,
         _ => &desk,
     };
-    if let Some(path) = wanted.csv {
-        files::write(path, &rows_csv(&one.samples)?)?;
-    }
+    call::columns(Want::Columns, wanted.csv.as_deref(), || Ok(of_samples(&one.samples)))?;
     if let Some(path) = wanted.plot {
         let columns = plotted(mechanism);
         let svg = columns_over_time(&one.samples, &columns, &mechanism.title, label).map_err(anyhow::Error::from)?;

@@ -1,36 +1,57 @@
-//! Units on their way into a CSV file.
+//! Units on their way into a CSV file, or to a program that wants them as columns.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use slipfit_system::files::{self, WriteError, Writing};
 
 use crate::{
+    cli::call::{self, Call, Want},
     population::{Unit, subject::Subject},
-    show::export::UnitRows,
+    show::export::of_units,
 };
 
-/// Rows of units on their way into a file.
+/// Rows of units.
 pub struct Rows<'a> {
-    path: &'a Path,
     subject: &'a dyn Subject,
-    rows: UnitRows<Writing>,
+    file: Option<(&'a Path, csv::Writer<Writing>)>,
+    /// Who wants them as columns.
+    call: Option<Arc<Call>>,
 }
 
 impl<'a> Rows<'a> {
-    /// Into the file `path`, for units of `subject`.
-    pub fn begin(path: &'a Path, subject: &'a dyn Subject) -> Result<Self, WriteError> {
-        let rows = UnitRows::new(Writing::begin(path)?, subject.kind(), &subject.gap_names());
-        Ok(Self { path, subject, rows: rows.map_err(files::failed(path))? })
+    /// For `count` units of `subject` into the file `path`, if there is one. None if nobody wants rows.
+    pub fn begin(path: Option<&'a Path>, subject: &'a dyn Subject, count: usize) -> Result<Option<Self>, WriteError> {
+        let names = of_units(subject, &[]);
+        let begin = |path| {
+            let mut writer = csv::Writer::from_writer(Writing::begin(path)?);
+            names.write_names(&mut writer).map_err(files::failed(path))?;
+            Ok((path, writer))
+        };
+        let file = path.map(begin).transpose()?;
+        let call = call::current().filter(|call| call.wants(Want::Columns));
+        if let Some(call) = &call {
+            let mut none = names;
+            none.reserve(count);
+            call.give(Want::Columns, none);
+        }
+        Ok((call.is_some() || file.is_some()).then_some(Self { subject, file, call }))
     }
 
     /// Adds some units.
     pub fn add(&mut self, units: &[Unit]) -> Result<(), WriteError> {
-        let mut add = |unit: &Unit| self.rows.add(self.subject.tightness(&unit.gaps), unit);
-        units.iter().try_for_each(&mut add).map_err(files::failed(self.path))
+        let columns = of_units(self.subject, units);
+        if let Some((path, writer)) = &mut self.file {
+            columns.write_rows(writer).map_err(files::failed(path))?;
+        }
+        if let Some(call) = &self.call {
+            call.give(Want::Columns, columns);
+        }
+        Ok(())
     }
 
-    /// The file is whole.
+    /// There are no more.
     pub fn end(self) -> Result<(), WriteError> {
-        self.rows.finish().map_err(files::failed(self.path))?.end(self.path)
+        let Some((path, writer)) = self.file else { return Ok(()) };
+        writer.into_inner().map_err(csv::IntoInnerError::into_error).map_err(files::failed(path))?.end(path)
     }
 }

@@ -35,7 +35,7 @@ use crate::{
     mechanism::self_locking::DriveSide,
     population::{statistics::Statistics, uncertain::answer::Answer},
     show::{
-        export::sweep_csv,
+        export::of_sweep,
         figure::{forces, velocities, verdicts},
         report::{Figure, Flash, Production, ReportInput, report},
     },
@@ -98,7 +98,7 @@ impl Arguments {
         let mut files: Vec<(String, Vec<u8>)> = vec![
             (PAGE.into(), page.into_string().into_bytes()),
             (TABLE.into(), table.bytes.clone()),
-            (SWEEP.into(), sweep_csv(simulated.judged())?),
+            (SWEEP.into(), of_sweep(simulated.judged()).to_csv()?),
         ];
         files.extend(figures.into_iter().map(|(name, figure)| (name, figure.svg.into_bytes())));
         if let Some(OfProduction { shown: (units, names), .. }) = units {

@@ -14,6 +14,7 @@ use crate::{
     cli::{
         arguments::Moving,
         by_one_drive::ByOneDrive,
+        call::{self, Want},
         failure::Failure,
         population::words::{faults, malfunction},
         terminal::{given, print, print_json, progress, text_table, warn},
@@ -27,7 +28,8 @@ use crate::{
     scene::{Override, parse_levels},
     setup::LevelRange,
     show::{
-        export::{figure_names, figures},
+        columns::{Column, Columns},
+        export::of_figures,
         figure::{OverKey, Swept, over_keys},
     },
 };
@@ -129,9 +131,7 @@ impl Arguments {
             })
         })??;
         bar.finish_and_clear();
-        if let Some(path) = &self.csv {
-            files::write(path, &csv_of(&keys, kind, &found)?)?;
-        }
+        call::columns(Want::Columns, self.csv.as_deref(), || Ok(columns(&keys, kind, &found)))?;
         if let Some(path) = &self.plot {
             let swept: Vec<Swept> = found.iter().map(shown).collect();
             let named: Vec<OverKey> =
@@ -315,21 +315,22 @@ fn table(keys: &[Key], kind: DriveKind, points: &[Point]) -> String {
     text_table(&heading, &rows)
 }
 
-/// A row for every point in SI units; missing values are empty.
-fn csv_of(keys: &[Key], kind: DriveKind, points: &[Point]) -> anyhow::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let names = keys.iter().map(|key| key.name.as_str()).filter(|name| *name != LEVEL).chain([LEVEL, "verdict"]);
-    writer.write_record(names.chain(figure_names(kind)).chain(["units", "malfunctions", "undecided"]))?;
-    for point in points {
-        let values = keys.iter().zip(&point.values).filter(|(key, _)| key.name != LEVEL);
-        let own = values.map(|(_, value)| ten_digits(*value));
-        let own = own.chain([ten_digits(point.n), point.outcome.verdict.to_string()]).chain(figures(&point.outcome));
-        let counts =
-            point.population.as_ref().map(|found| [found.units, found.malfunctions.units, found.undecided.units]);
-        let counts = counts.map_or_else(Default::default, |counts| counts.map(|count| count.to_string()));
-        writer.write_record(own.chain(counts))?;
-    }
-    Ok(writer.into_inner()?)
+/// A row for every point in SI units.
+fn columns(keys: &[Key], kind: DriveKind, points: &[Point]) -> Columns {
+    let own = keys.iter().enumerate().filter(|(_, key)| key.name != LEVEL);
+    let of_key = |(k, key): (usize, &Key)| Column::numbers(&key.name, points.iter().map(|point| point.values[k]));
+    let mut all: Vec<_> = own.map(of_key).collect();
+    all.push(Column::numbers(LEVEL, points.iter().map(|point| point.n)));
+    all.push(Column::words("verdict", points.iter().map(|point| Some(point.outcome.verdict.to_string()))));
+    all.extend(of_figures(kind, points.iter().map(|point| &point.outcome)));
+    let count = |name, count: fn(&Statistics) -> u64| {
+        let of_point = |point: &Point| point.population.as_ref().map(|found| count(found) as f64);
+        Column::optional(name, points.iter().map(of_point))
+    };
+    all.push(count("units", |found| found.units));
+    all.push(count("malfunctions", |found| found.malfunctions.units));
+    all.push(count("undecided", |found| found.undecided.units));
+    Columns(all)
 }
 
 /// A point as pictures show it: the share in per cent, where any unit comes to a verdict.

@@ -10,15 +10,13 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 use serde::Serialize;
-use slipfit_system::files;
 use slipfit_tolerance::{
     counting::{
         file::Source,
         run::{Keep, RunError, Shard, checkpoint, run},
         study::{Settings, Study},
     },
-    model::Model,
-    number::ten_digits,
+    model::{Measure, Model},
     numeric::lanes::LANES,
     sampling::sampler::Method,
     theory::experiment::Design,
@@ -27,11 +25,15 @@ use slipfit_tolerance::{
 use self::gaps::Given;
 use super::{
     arguments::{DRAWING, SceneArguments, ThreadArguments},
+    call::{self, Want},
     endings,
     failure::Failure,
     terminal::{print, print_json, progress, warn},
 };
-use crate::setup::{Measured, Scene};
+use crate::{
+    setup::{Measured, Scene},
+    show::columns::{Column, Columns, Values},
+};
 
 pub(super) use output::OutputArguments;
 
@@ -196,9 +198,8 @@ impl Arguments {
         let bar = progress("drawing", settings.units_in(&blocks) as usize);
         let tallies = self.threads.install(|| run(&study, &source, shard, keep.as_ref(), |units| bar.inc(units)))??;
         bar.finish_and_clear();
-        if let Some(path) = &self.draws {
-            files::write(path, &draws_csv(&study, &progress("writing", settings.samples as usize))?)?;
-        }
+        let drawn = || Ok(draws(&study, &progress("writing", settings.samples as usize))?);
+        call::columns(Want::Draws, self.draws.as_deref(), drawn)?;
         match (&self.out, shard) {
             (Some(out), Shard { number, count: 2.. }) => {
                 let units: u64 = tallies.iter().map(|tally| tally.counts.units).sum();
@@ -228,25 +229,26 @@ impl std::fmt::Display for Written {
     }
 }
 
-/// Measures of every unit, in mm and degrees, one line a unit.
-fn draws_csv(study: &Study, bar: &ProgressBar) -> anyhow::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
+/// Measures of every unit, in mm and degrees, a row a unit.
+fn draws(study: &Study, bar: &ProgressBar) -> anyhow::Result<Columns> {
     let measures = &study.model.measures;
-    let heading = measures.iter().map(|measure| measure.name.clone());
-    writer.write_record(std::iter::once("unit".to_owned()).chain(heading))?;
-    for first in (0..study.settings.samples).step_by(LANES) {
+    let units = study.settings.samples;
+    let mut all: Vec<Vec<f64>> = measures.iter().map(|_| Vec::with_capacity(units as usize)).collect();
+    for first in (0..units).step_by(LANES) {
         let values = study.unit_measures(first);
-        let units = (study.settings.samples - first).min(LANES as u64);
-        for lane in 0..units as usize {
-            let scaled = measures.iter().zip(&values).map(|(measure, value)| value.0[lane] * measure.quantity.factor());
-            let fields = scaled.map(ten_digits);
-            writer.write_record(std::iter::once((first + lane as u64).to_string()).chain(fields))?;
+        let lanes = (units - first).min(LANES as u64);
+        for ((column, measure), value) in all.iter_mut().zip(measures).zip(&values) {
+            column.extend(value.0[..lanes as usize].iter().map(|value| value * measure.quantity.factor()));
         }
-        bar.inc(units);
+        bar.inc(lanes);
         if slipfit_system::interrupt::requested() {
             return Err(RunError::Interrupted { saved: None }.into());
         }
     }
     bar.finish_and_clear();
-    Ok(writer.into_inner()?)
+    let of_measure = |(measure, values): (&Measure, Vec<f64>)| {
+        Column::numbers(&measure.name, values).in_unit(measure.quantity.unit())
+    };
+    let number = Column::new("unit", Values::Counts((0..units).collect()));
+    Ok(Columns([number].into_iter().chain(measures.iter().zip(all).map(of_measure)).collect()))
 }

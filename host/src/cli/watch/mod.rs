@@ -9,7 +9,7 @@ mod server;
 mod stage;
 mod worker;
 
-use std::sync::Arc;
+use std::{ffi::OsString, sync::Arc};
 
 use clap::Args;
 
@@ -38,11 +38,11 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    /// Runs the command until it is interrupted.
+    /// Runs the command until it is interrupted. `program` is what starts this program again, if not what runs now.
     ///
     /// # Errors
     /// A scene that is no file, a port that is taken.
-    pub(super) fn run(self) -> Result<(), Failure> {
+    pub(super) fn run(self, program: &[OsString]) -> Result<(), Failure> {
         if let Some(n) = self.preview {
             return preview::preview(&self.scene, n);
         }
@@ -61,7 +61,7 @@ impl Arguments {
         let url = server.url();
         server.start();
         print(&format!("{url}\nshows {} anew after each save; Ctrl-C ends it", path.display()))?;
-        Worker::new(self.scene, board).work();
+        Worker::new(program, self.scene, board).work();
         Ok(())
     }
 }

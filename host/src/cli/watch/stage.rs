@@ -1,6 +1,7 @@
 //! A stage of the work: this program as a process of its own, so that it can be stopped at any moment.
 
 use std::{
+    ffi::OsString,
     fs::File,
     io::{Read, Seek},
     process::{Child, Command, Stdio},
@@ -25,13 +26,20 @@ pub struct Done {
 }
 
 impl Stage {
-    /// Starts this program with these `arguments`.
+    /// Starts this program with these `arguments`; by `program`, if it is not what runs now.
     ///
     /// # Errors
     /// If there is no process or no temporary file to be had.
-    pub fn start(arguments: &[String]) -> std::io::Result<Self> {
+    pub fn start(program: &[OsString], arguments: &[String]) -> std::io::Result<Self> {
         let [stdout, stderr] = [tempfile::tempfile()?, tempfile::tempfile()?];
-        let mut command = Command::new(std::env::current_exe()?);
+        let mut command = match program {
+            [] => Command::new(std::env::current_exe()?),
+            [program, first @ ..] => {
+                let mut command = Command::new(program);
+                command.args(first);
+                command
+            }
+        };
         command.args(arguments).stdin(Stdio::null()).stdout(stdout.try_clone()?).stderr(stderr.try_clone()?);
         Ok(Self { child: command.spawn()?, stdout, stderr })
     }

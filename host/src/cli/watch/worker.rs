@@ -1,6 +1,7 @@
 //! What follows the file: looks at it, and computes one stage after another until it changes.
 
 use std::{
+    ffi::OsString,
     path::PathBuf,
     sync::Arc,
     time::{Duration, SystemTime},
@@ -26,6 +27,7 @@ const UNITS: [u32; 3] = [64, 512, 4096];
 
 /// Follows a scene.
 pub struct Worker {
+    program: Vec<OsString>,
     scene: SceneArguments,
     board: Arc<Board>,
     seen: Option<Seen>,
@@ -54,9 +56,9 @@ struct Task {
 }
 
 impl Worker {
-    /// Of this `scene`, whose results go to the `board`.
-    pub fn new(scene: SceneArguments, board: Arc<Board>) -> Self {
-        Self { scene, board, seen: None, running: None, waiting: Vec::new(), no_unit: None }
+    /// Of this `scene`, whose results go to the `board`. `program` is what starts this program again.
+    pub fn new(program: &[OsString], scene: SceneArguments, board: Arc<Board>) -> Self {
+        Self { program: program.to_vec(), scene, board, seen: None, running: None, waiting: Vec::new(), no_unit: None }
     }
 
     /// Works until the process is asked to stop. Then no stage is left behind.
@@ -139,7 +141,7 @@ impl Worker {
     fn advance(&mut self) {
         let Some((task, stage)) = &mut self.running else {
             let Some(mut task) = self.waiting.pop() else { return };
-            match start(&mut task) {
+            match start(&self.program, &mut task) {
                 Ok(stage) => self.running = Some((task, stage)),
                 Err(error) => self.failed(&format!("cannot compute: {error}")),
             }
@@ -209,14 +211,14 @@ impl Worker {
 const PAGE: &str = "page.html";
 
 /// Starts the stage of a `task`; that of a population writes a page.
-fn start(task: &mut Task) -> std::io::Result<Stage> {
+fn start(program: &[OsString], task: &mut Task) -> std::io::Result<Stage> {
     if task.section == "population" {
         let folder = tempfile::tempdir()?;
         let page = folder.path().join(PAGE);
         task.arguments.insert(1, format!("--page={}", page.display()));
         task.page = Some(folder);
     }
-    Stage::start(&task.arguments)
+    Stage::start(program, &task.arguments)
 }
 
 /// What is on a page below its title.
