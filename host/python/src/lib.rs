@@ -5,7 +5,6 @@
 
 mod column;
 mod columns;
-mod value;
 
 use std::{
     ffi::OsString,
@@ -53,8 +52,8 @@ fn raise(py: Python<'_>, failure: &Failure) -> PyErr {
     }
 }
 
-/// What a command returns: the object that `--json` prints, or `None`; other output; warnings; columns; draws.
-type Returned = (Py<PyAny>, String, Vec<String>, Option<Columns>, Option<Columns>);
+/// What a command returns: what it prints; warnings that are not in JSON; columns; draws.
+type Returned = (String, Vec<String>, Option<Columns>, Option<Columns>);
 
 /// Runs a command, whose name and options are `arguments`.
 ///
@@ -83,30 +82,29 @@ fn call(
         let _ = send.send(running.run());
     })?;
     let mut told = None;
-    let result = wait(py, receive, || {
-        py.check_signals()?;
+    let mut tell = || {
         let now = call.progress();
-        match (&progress, &now) {
-            (Some(tell), Some(Progress { what, done, of })) if now != told => {
-                tell.call1((what, *done, *of))?;
-                told = now;
-                Ok(())
-            }
-            _ => Ok(()),
+        if let (Some(tell), Some(Progress { what, done, of }), true) = (&progress, &now, now != told) {
+            tell.call1((what, *done, *of))?;
         }
-    });
+        told = now;
+        PyResult::Ok(())
+    };
+    let result = wait(py, receive, || py.check_signals().and_then(|()| tell()));
+    // What has been done since it was last told.
+    if let Ok(Some(Ok(_))) = &result {
+        tell()?;
+    }
     // A panic has been reported where the channel closed without a result.
     let panicked = py.detach(|| work.join().is_err());
     match result? {
         _ if panicked => Err(error(py, "WorkError", ("slipfit stopped by an internal error; see standard error",))),
         None => Err(error(py, "WorkError", ("slipfit stopped without a result",))),
         Some(Err(failure)) => Err(raise(py, &failure)),
-        Some(Ok(Answer { value: found, text, warnings, columns, draws })) => {
-            let found = found.map(|found| value::to_python(py, &found)).transpose()?;
+        Some(Ok(Answer { text, warnings, columns, draws })) => {
             let of =
                 |columns: Option<slipfit::show::columns::Columns>| columns.map(|all| Columns::of(py, all)).transpose();
-            let value = found.map_or_else(|| py.None(), Bound::unbind);
-            Ok((value, text, warnings, of(columns)?, of(draws)?))
+            Ok((text, warnings, of(columns)?, of(draws)?))
         }
     }
 }

@@ -35,11 +35,9 @@ pub enum Want {
 /// What a command returns.
 #[derive(Debug, Default)]
 pub struct Answer {
-    /// What `--json` prints.
-    pub value: Option<serde_json::Value>,
-    /// Other text for standard output.
+    /// What the command prints on standard output.
     pub text: String,
-    /// Warnings that are not in `value`.
+    /// Warnings that are not in the JSON output.
     pub warnings: Vec<String>,
     /// The columns of `--csv`, if they are wanted and the command has them.
     pub columns: Option<Columns>,
@@ -64,7 +62,7 @@ thread_local! {
 }
 
 impl Call {
-    /// Of `arguments`, which follow the program's name on the command line, with `--json` where the command has it.
+    /// Of `arguments`, which follow the program's name on the command line.
     ///
     /// `scene` is the text of the scene, if there need not be a file: then the file that the arguments name is not read. `wanted` are
     /// the columns that are wanted.

@@ -94,10 +94,6 @@ struct Versioned<'a, T> {
 /// Prints `value`, an object, as JSON with the version of the format before its fields.
 pub fn print_json<T: serde::Serialize>(value: &T) -> Result<(), Failure> {
     let versioned = Versioned { json_version: JSON_VERSION, value };
-    if let Some(call) = call::current() {
-        call.answer().value = Some(serde_json::to_value(versioned).map_err(anyhow::Error::from)?);
-        return Ok(());
-    }
     print(&serde_json::to_string_pretty(&versioned).map_err(anyhow::Error::from)?)
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import json
 import os
 import sys
 import tempfile
@@ -130,11 +131,13 @@ def call(
         if folder is not None and option is not None:
             options = {**options, option: folder if option == "plots" else folder / "picture.svg"}
         arguments = [command, *words(options, repeated), "--json", "--", *first]
-        value, _, warnings, found, drawn_units = run(arguments, scene, columns, draws, progress)
+        text, warnings, found, drawn_units = run(arguments, scene, columns, draws, progress)
         pictures = {} if folder is None else {path.stem: path.read_text("utf-8") for path in sorted(folder.glob("*.svg"))}
-    fields: dict[str, Any] = value or {}
+    fields: dict[str, Any] = json.loads(text)
     fields["warnings"] = [*(fields.get("warnings") or []), *warnings]
-    fields.pop("samples", None) if command == "simulate" else None
+    if command == "simulate":
+        # They are the columns.
+        del fields["samples"]
     fields.update({name: one for name, one in (("columns", found), ("draws", drawn_units)) if one is not None})
     return kind(fields, pictures)
 

@@ -83,7 +83,7 @@ class Result:
         drawn = [columns[name] for name in names] or [column for column in rest if isinstance(column[0], float)]
         figure, axes = plt.subplots(len(drawn), sharex=True, squeeze=False, figsize=(7, 1.8 * len(drawn)), layout="constrained")
         for axis, column in zip(axes[:, 0], drawn):
-            axis.plot(memoryview(first), memoryview(column))
+            axis.plot(first.tolist(), column.tolist())
             axis.set_ylabel(_labelled(column))
         axes[-1, 0].set_xlabel(_labelled(first))
         return figure

@@ -113,10 +113,12 @@ class Scene(SceneCommands):
         Raises:
             SceneError, InputError, WorkError: As for all commands.
         """
-        is_list = isinstance(records, Sequence) and not isinstance(records, str)
-        all_records = [*records] if is_list else [records]
+        if is_table(records) or isinstance(records, (str, os.PathLike)):
+            records = [records]
+        elif not isinstance(records, Sequence):
+            raise InputError(f"records are {records!r}, allowed are files, columns, and lists of them")
         options: dict[str, Option] = {"each": each, "n": n, "output": output, "page": page}
-        return self._call(results.Identification, "identify", options, all_records, progress=progress)
+        return self._call(results.Identification, "identify", options, records, progress=progress)
 
     def watch(self, *, port: int | None = None) -> Watch:
         """Serves a page of the scene's file, which follows each save, until it is stopped: the command ``watch``."""
@@ -175,10 +177,10 @@ def import_qif(
     Written to ``output``, or into the scene ``update``, if one is given; then the text is what the command says about it.
     """
     options = words({"output": output, "name": name, "update": update}, frozenset())
-    return run(["import", *options, "--", path_of(model)])[1]
+    return run(["import", *options, "--", path_of(model)])[0]
 
 
 def schema() -> dict[str, Any]:
     """The JSON Schema of scenes."""
-    found: dict[str, Any] = json.loads(run(["schema"])[1])
+    found: dict[str, Any] = json.loads(run(["schema"])[0])
     return found

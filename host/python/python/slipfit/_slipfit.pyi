@@ -42,7 +42,7 @@ class Columns:
     def items(self) -> list[tuple[str, Column]]: ...
     def to_dict(self) -> dict[str, list[Any]]: ...
 
-_Returned: TypeAlias = tuple[dict[str, Any] | None, str, list[str], Columns | None, Columns | None]
+_Returned: TypeAlias = tuple[str, list[str], Columns | None, Columns | None]
 
 def call(
     arguments: Sequence[str | os.PathLike[str]],

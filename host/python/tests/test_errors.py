@@ -1,0 +1,164 @@
+"""Whatever is wrong raises a documented exception; nothing aborts."""
+
+import math
+import multiprocessing
+import pickle
+import threading
+from pathlib import Path
+
+import numpy as np
+import pandas
+import pytest
+
+import slipfit
+
+SLIDE = "cd-rom-slide"
+
+
+def closed():
+    file = open(__file__)
+    file.close()
+    return file
+
+
+VALUES = [math.nan, math.inf, "a", b"a", object(), [1.0, 2.0], [math.nan] * 16, {}, "1;2", "\0", (None,), 1j, closed(), np.zeros((2, 2))]
+CALLS = {
+    "n": lambda value: slipfit.Scene(SLIDE).simulate(n=value),
+    "units": lambda value: slipfit.Scene(SLIDE).population(units=value),
+    "seed": lambda value: slipfit.Scene(SLIDE).population(seed=value),
+    "threads": lambda value: slipfit.Scene(SLIDE).population(threads=value),
+    "levels": lambda value: slipfit.Scene(SLIDE).sweep(n=value),
+    "over": lambda value: slipfit.Scene(SLIDE).sweep(over=value),
+    "every": lambda value: slipfit.Scene(SLIDE).simulate(every=value),
+    "override": lambda value: slipfit.Scene(SLIDE, {"slide.mass": value}).check(),
+    "list": lambda value: slipfit.Scene(SLIDE, {"slide.gravity": value}).check(),
+    "drive": lambda value: slipfit.Scene("slider-crank").population(drive=value),
+    "parts": lambda value: slipfit.capability(value),
+    "records": lambda value: slipfit.Scene(SLIDE).identify(value),
+    "merged": lambda value: slipfit.merge([value]),
+}
+
+
+@pytest.mark.parametrize("value", VALUES, ids=lambda value: type(value).__name__)
+@pytest.mark.parametrize("name", CALLS)
+def test_bad_values(name, value):
+    with pytest.raises(slipfit.InputError):
+        CALLS[name](value)
+
+
+OTHERS = {
+    "no such option": lambda: slipfit.Scene(SLIDE).simulate(unheard=1),
+    "no such scene": lambda: slipfit.Scene("nowhere.toml").check(),
+    "a folder": lambda: slipfit.Scene("/").check(),
+    "a scene of bytes": lambda: slipfit.Scene(b"x"),
+    "a scene of a number": lambda: slipfit.Scene(3),
+    "a closed file": lambda: slipfit.Scene(closed()),
+    "a text of bytes": lambda: slipfit.Scene.from_text(b"x"),
+    "no key of a scene": lambda: slipfit.Scene(SLIDE, {"slide.mas": 1.0}).check(),
+    "a key that is no text": lambda: slipfit.Scene(SLIDE, {3: 1.0}).check(),
+    "another unit": lambda: slipfit.Scene(SLIDE, {"slide.mass": "90 N"}).check(),
+    "a negative mass": lambda: slipfit.Scene(SLIDE, {"slide.mass": -1.0}).check(),
+    "too few gaps": lambda: slipfit.Scene(SLIDE).simulate(n=[1.0] * 15),
+    "columns of different lengths": lambda: slipfit.capability({"a": [1.0, 2.0], "b": [1.0]}),
+    "columns of lists": lambda: slipfit.capability({"a": np.zeros((3, 2))}),
+    "no columns": lambda: slipfit.capability(pandas.DataFrame()),
+    "words": lambda: slipfit.capability({"a": ["x", "y"]}),
+    "columns without time": lambda: slipfit.Scene.from_text('[identify]\nmodel = "drive-train"\n').identify({"force (N)": [1.0]}),
+    "columns where none are": lambda: slipfit.Scene(SLIDE, {"slide.mass": {"a": [1.0]}}).check(),
+    "an output that is a folder": lambda: slipfit.Scene(SLIDE).table(output="/"),
+    "no output": lambda: slipfit.Scene(SLIDE).fmu(),
+    "an ending": lambda: slipfit.Scene(SLIDE).kernel(output="kernel.png"),
+    "0 threads": lambda: slipfit.Scene(SLIDE).population(threads=0),
+    "1.5 units": lambda: slipfit.Scene(SLIDE).population(units=1.5),
+    "a negative seed": lambda: slipfit.Scene(SLIDE).population(seed=-1),
+    "half a shard": lambda: slipfit.Scene(SLIDE).population(shard="1/2"),
+    "no parts": lambda: slipfit.merge([]),
+    "a model that is none": lambda: slipfit.import_qif(__file__),
+    "a scene without a drive": lambda: slipfit.Scene("clutch").population(),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_bad_calls(name, here):
+    with pytest.raises((slipfit.InputError, TypeError) if name == "no such option" else slipfit.InputError):
+        OTHERS[name]()
+    assert list(here.iterdir()) == []
+
+
+def test_there_are_a_hundred():
+    assert len(VALUES) * len(CALLS) + len(OTHERS) >= 100
+
+
+def test_mistakes_of_a_scene_have_places(here):
+    text = '[slide]\nmass = -1\nmas = 2\n'
+    with pytest.raises(slipfit.SceneError) as caught:
+        slipfit.Scene.from_text(text, name="mine.toml").check()
+    problems = caught.value.problems
+    assert any((one.file, one.line) == ("mine.toml", 3) and "mas" in one.message for one in problems)
+    assert caught.value.line == problems[0].line and all(one.column >= 1 for one in problems)
+    assert any(one.allowed for one in problems) and "mine.toml:3" in str(caught.value)
+    assert list(here.iterdir()) == []
+    with pytest.raises(slipfit.SceneError) as caught:
+        slipfit.Scene(SLIDE, {"slide.mass": "90 N"}).check()
+    assert caught.value.file == "command line"
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert again.problems == caught.value.problems and str(again) == str(caught.value)
+
+
+def test_work_without_a_result(here):
+    """A full disk: every write to this file fails."""
+    if not Path("/dev/full").exists():
+        pytest.skip("the system has no /dev/full")
+    Path("full.csv").symlink_to("/dev/full")
+    with pytest.raises(slipfit.SlipfitError):
+        slipfit.Scene(SLIDE).simulate(csv="/dev/full")
+
+
+def test_an_exception_of_the_progress_function_stops_the_work():
+    class Enough(Exception):
+        pass
+
+    def tell(what, done, of):
+        raise Enough
+
+    with pytest.raises(Enough):
+        slipfit.Scene("cd-rom-slide-drawing").population(units=1_000_000, progress=tell)
+    assert slipfit.Scene(SLIDE).check().n == 0.0
+
+
+def test_bad_calls_from_many_threads():
+    caught = []
+
+    def call():
+        for _ in range(20):
+            try:
+                slipfit.Scene(SLIDE, {"slide.mass": -1.0}).check()
+            except slipfit.SceneError as error:
+                caught.append(error.line)
+
+    threads = [threading.Thread(target=call) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(caught) == 160
+
+
+def in_a_process(queue):
+    try:
+        slipfit.Scene(SLIDE, {"slide.mass": -1.0}).check()
+    except slipfit.SceneError:
+        queue.put(slipfit.Scene("cd-rom-slide-drawing").population(units=64).statistics.units)
+
+
+@pytest.mark.filterwarnings("ignore:This process")
+@pytest.mark.parametrize("start", ["fork", "spawn"])
+def test_forked_and_spawned_processes(start):
+    slipfit.Scene("cd-rom-slide-drawing").population(units=64)
+    context = multiprocessing.get_context(start)
+    queue = context.Queue()
+    process = context.Process(target=in_a_process, args=(queue,))
+    process.start()
+    assert queue.get(timeout=60) == 64
+    process.join()
+    assert process.exitcode == 0

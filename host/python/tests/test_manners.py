@@ -1,0 +1,185 @@
+"""Types, copies, threads, Ctrl-C, progress, memory, pictures."""
+
+import copy
+import io
+import json
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas
+import pytest
+from conftest import command_line
+
+import slipfit
+
+SLIDE = "cd-rom-slide"
+DRAWING = "cd-rom-slide-drawing"
+
+
+def test_results_are_typed():
+    result = slipfit.Scene(DRAWING).population(units=64)
+    assert isinstance(result, slipfit.results.Population)
+    assert isinstance(result.statistics.malfunctions, slipfit.results.Share)
+    assert isinstance(result.levels[0], slipfit.results.LevelInPopulation)
+    assert result["statistics"]["malfunctions"]["share"] == result.statistics.malfunctions.share
+    assert result.rare is None and result.columns is None and "columns" not in result
+    with pytest.raises(AttributeError, match="it has .*title"):
+        result.unheard
+    with pytest.raises(KeyError):
+        result["unheard"]
+
+
+def test_a_field_of_another_kind_of_scene_is_none():
+    assert slipfit.Scene("slider-crank").check().degrees_of_freedom is None
+    assert slipfit.Scene(SLIDE).check().freedom is None
+
+
+def test_results_can_be_compared_pickled_and_copied():
+    result = slipfit.Scene(SLIDE).simulate(n=2.5)
+    for again in (pickle.loads(pickle.dumps(result)), copy.deepcopy(result), copy.copy(result)):
+        assert again == result and type(again) is type(result) and again.columns == result.columns
+        assert again.verdict == result.verdict
+    assert result != slipfit.Scene(SLIDE).simulate(n=1.0)
+
+
+def test_overrides_have_units_and_lists():
+    scene = slipfit.Scene(SLIDE, {"slide.mass": "90 g", "slide.gravity": np.array([0.0, -9.81, 0.0])})
+    expected = json.loads(
+        command_line("simulate", SLIDE, "--set", 'slide.mass="90 g"', "--set", "slide.gravity=[0,-9.81,0]", "--json")
+    )
+    assert scene.simulate().peak_force == expected["peak_force"]
+    assert scene.with_overrides({"slide.mass": 50.0}).simulate().peak_force != expected["peak_force"]
+
+
+STACK = """
+title = "Two parts"
+[[dimension]]
+name = "a"
+value = 10.0
+tolerance = 0.1
+[[dimension]]
+name = "b"
+value = 20.0
+tolerance = 0.1
+[[measure]]
+name = "sum"
+is = "a + b"
+"""
+
+
+@pytest.mark.parametrize("kind", [dict, pandas.DataFrame])
+def test_measured_parts_as_arrays(kind, here):
+    """Own samples take the place of a dimension's distribution: mean and standard deviation of the sum are those of numpy."""
+    sample = np.random.default_rng(2).gamma(4.0, 0.01, 5000) + 9.96
+    measured = {"measured.file": kind({"a": sample})}
+    text = STACK + '[measured]\nfile = "x.csv"\n[[measured.column]]\nof = "a"\n'
+    result = slipfit.Scene.from_text(text, measured).tolerance(samples=200_000)
+    found = result.measures[0]
+    # b is normal with 3 sigma at its limits. Means of 200,000 units scatter by 1e-4 mm.
+    assert found.mean == pytest.approx(sample.mean() + 20.0, abs=6e-4)
+    assert found.sd == pytest.approx(np.hypot(sample.std(ddof=1), 0.1 / 3), rel=0.02)
+    assert list(here.iterdir()) == []
+
+
+def test_the_gil_is_released():
+    thread = threading.Thread(target=slipfit.Scene(DRAWING).population, kwargs={"units": 512})
+    thread.start()
+    counted = 0
+    while thread.is_alive():
+        counted += 1
+        time.sleep(0.001)
+    assert counted > 10
+
+
+def test_threads_have_answers_of_their_own():
+    expected = {n: slipfit.Scene(SLIDE).simulate(n=n) for n in (0.0, 1.0, 2.0, 3.0)}
+    found = {}
+    threads = [threading.Thread(target=lambda n=n: found.update({n: slipfit.Scene(SLIDE).simulate(n=n)})) for n in expected]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert {n: one.columns for n, one in found.items()} == {n: one.columns for n, one in expected.items()}
+
+
+def test_the_number_of_threads_changes_nothing():
+    one, two = (slipfit.Scene(DRAWING).population(units=600, threads=threads, columns=True) for threads in (1, 2))
+    assert one == two and one.columns == two.columns
+
+
+def test_ctrl_c_ends_a_command_and_the_next_one_works():
+    threading.Timer(0.5, signal.raise_signal, [signal.SIGINT]).start()
+    started = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        slipfit.Scene(DRAWING).population(units=10_000_000)
+    assert time.monotonic() - started < 30
+    assert slipfit.Scene(SLIDE).check().n == 0.0
+
+
+def test_progress_goes_to_a_function_from_nothing_to_all():
+    told = []
+    slipfit.Scene(DRAWING).population(units=2000, progress=lambda *now: told.append(now))
+    assert {what for what, _, _ in told} == {"simulating"} and told[-1][1:] == (2000, 2000)
+    assert [done for _, done, _ in told] == sorted(done for _, done, _ in told)
+
+
+def test_a_line_says_how_far_the_work_is(monkeypatch):
+    from slipfit import _progress
+
+    shown = io.StringIO()
+    monkeypatch.setattr(sys, "stderr", shown)
+    monkeypatch.setattr(_progress, "FIRST", 0.0)
+    monkeypatch.setattr(_progress, "BETWEEN", 0.0)
+    slipfit.Scene(DRAWING).population(units=2000, progress=True)
+    assert "simulating 2,000 of 2,000" in shown.getvalue() and shown.getvalue().endswith("\r")
+
+
+def test_pictures_for_notebooks():
+    for command, scene, options in [("simulate", SLIDE, {}), ("check", "slider-crank", {}), ("tolerance", "clutch", {"samples": 500})]:
+        result = getattr(slipfit.Scene(scene), command)(picture=True, **options)
+        assert result.pictures and all(svg.startswith("<svg") for svg in result.pictures.values())
+        assert "<svg" in result._repr_html_() and "<table>" in result._repr_html_()
+    assert slipfit.Scene(SLIDE).simulate().pictures == {}
+    assert "<svg" in slipfit.Scene("slider-crank")._repr_html_()
+
+
+def test_plots_with_matplotlib():
+    import matplotlib
+
+    matplotlib.use("agg")
+    result = slipfit.Scene(SLIDE).simulate(n=2.5)
+    assert [axis.get_ylabel() for axis in result.plot("force", "vz").axes] == ["force (N)", "vz (m/s)"]
+    assert len(result.plot().axes) == 5
+
+
+def test_exit_codes_of_the_command_line():
+    def code(*arguments):
+        return subprocess.run([sys.executable, "-m", "slipfit", *arguments], capture_output=True).returncode
+
+    assert [code("check"), code("check", "--unheard"), code("check", "nowhere.toml"), code("--version")] == [0, 2, 2, 0]
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the memory of a process is read from /proc")
+def test_ten_thousand_calls_keep_their_memory():
+    def pages():
+        return int(Path("/proc/self/statm").read_text().split()[1])
+
+    scene, bad = slipfit.Scene(SLIDE), slipfit.Scene(SLIDE, {"slide.mass": -1.0})
+
+    def calls(count):
+        for _ in range(count):
+            scene.simulate(n=1.0, every="50ms") if _ % 10 == 0 else scene.check()
+            if _ % 10 == 5:
+                with pytest.raises(slipfit.SceneError):
+                    bad.check()
+
+    calls(1000)
+    before = pages()
+    calls(10_000)
+    assert (pages() - before) * 4096 < 8 << 20
