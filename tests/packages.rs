@@ -220,15 +220,16 @@ fn forget_unpacked(package: &str) {
 #[ignore = "builds what users build: `cargo verify --all`"]
 fn cargo_packages_core_and_the_c_library() {
     let folder = folder("cargo-packages");
-    forget_unpacked("slipfit-core-0.1.0");
+    let version = env!("CARGO_PKG_VERSION");
+    forget_unpacked(&format!("slipfit-core-{version}"));
     let mut package = cargo(folder.to_str().expect("a folder's name"));
     package.args(["package", "--offline", "--allow-dirty", "--quiet", "-p", "slipfit-core", "-p", "slipfit-capi"]);
     printed(&mut package);
     for name in ["slipfit-core", "slipfit-capi"] {
-        let archive = folder.join(format!("cross/package/{name}-0.1.0.crate"));
+        let archive = folder.join(format!("cross/package/{name}-{version}.crate"));
         let files = printed(Command::new("tar").arg("tzf").arg(archive));
         for file in ["README.md", "Cargo.toml", "src/lib.rs", "LICENSE-MIT", "LICENSE-APACHE"] {
-            assert!(files.contains(&format!("{name}-0.1.0/{file}\n")), "{file} is missing in {files}");
+            assert!(files.contains(&format!("{name}-{version}/{file}\n")), "{file} is missing in {files}");
         }
     }
 }

@@ -15,7 +15,7 @@
 #include <stdint.h>
 
 // The version of the library, 10000·major + 100·minor + patch.
-#define SLIPFIT_VERSION 100
+#define SLIPFIT_VERSION 200
 
 // Implicit Euler with four Newton passes.
 #define SLIPFIT_SCHEME_IMPLICIT_EULER 1

@@ -72,7 +72,7 @@ pub const SLIPFIT_UNIT_SCENE: slipfit_status = 42;
 pub const SLIPFIT_UNIT_STROKES: slipfit_status = 43;
 
 /// The version of the library, 10000·major + 100·minor + patch.
-pub const SLIPFIT_VERSION: u32 = 100;
+pub const SLIPFIT_VERSION: u32 = 200;
 
 /// The version of the library that is linked, to be compared with the header's `SLIPFIT_VERSION`.
 #[unsafe(no_mangle)]
