@@ -4,6 +4,10 @@
 //! compiles a step again. [`plant`] moves bodies with elements chosen at run time, [`slide`] one body on four pins by its fast
 //! types, [`population`] thousands of such slides on the lanes of a register.
 #![deny(unsafe_code)]
+#![cfg_attr(
+    not(target_arch = "x86_64"),
+    allow(dead_code, unused_variables, reason = "only x86-64 has lanes; elsewhere units are simulated one by one")
+)]
 
 mod cast;
 pub mod closing;

@@ -1,7 +1,8 @@
 //! The files of a release, by one command: `cargo artefacts FOLDER`.
 //!
 //! Wheels for Linux (x86-64 and aarch64) and Windows, the sources of the Python package, the program for Linux as an archive with manual
-//! pages and completions, a bill of materials, and SHA-256 sums of them all. The compilers of other systems come from PyPI.
+//! pages and completions, a bill of materials, and SHA-256 sums of them all. Linkers for Linux come from PyPI; that for Windows is Debian's
+//! gcc-mingw-w64-x86-64.
 #![forbid(unsafe_code)]
 
 mod archive;
@@ -17,10 +18,11 @@ use self::tools::{Tools, run};
 
 /// The root of the repository.
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-/// Systems that have a wheel.
-const WHEELS: [&str; 3] = ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu", "x86_64-pc-windows-gnu"];
-/// The oldest C library of Linux that wheels need, of 2014.
-const C_LIBRARY: &str = "manylinux_2_17";
+/// Options for wheels of Linux: with the C library of 2014, which zig's linker has for each processor.
+const LINUX: &[&str] = &["--zig", "--compatibility", "manylinux_2_17"];
+/// Systems that have a wheel, and options of maturin. For Windows the linker is that of mingw-w64.
+const WHEELS: [(&str, &[&str]); 3] =
+    [("x86_64-unknown-linux-gnu", LINUX), ("aarch64-unknown-linux-gnu", LINUX), ("x86_64-pc-windows-gnu", &[])];
 
 /// Builds the files of a release.
 #[derive(Parser)]
@@ -82,16 +84,14 @@ fn wheels(tools: &Tools, free_threaded: Option<&Path>, into: &Path) -> anyhow::R
         build.args(["--release", "--strip", "--locked", "--out"]).arg(into);
         build
     };
-    for target in WHEELS {
+    for (target, options) in WHEELS {
         run(std::process::Command::new("rustup").args(["target", "add", target]))?;
-        run(build().args(["--zig", "--compatibility", C_LIBRARY, "--target", target]))?;
+        run(build().args(options).args(["--target", target]))?;
     }
-    if let Some(python) = free_threaded {
-        run(build()
-            .args(["--zig", "--compatibility", C_LIBRARY, "--no-default-features", "--interpreter"])
-            .arg(python))?;
+    match free_threaded {
+        Some(python) => run(build().args(LINUX).args(["--no-default-features", "--interpreter"]).arg(python)),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Every crate that the program is made of, with its version, licence and checksum.
