@@ -18,7 +18,7 @@ use pyo3::{
     exceptions::{PyBufferError, PyIndexError, PyValueError},
     ffi,
     prelude::*,
-    types::{PyCapsule, PyList},
+    types::{PyCapsule, PyList, PySlice},
 };
 use slipfit::show::columns::{self, Values, Words};
 
@@ -154,7 +154,12 @@ impl Column {
         self.array.len()
     }
 
-    fn __getitem__<'py>(&self, py: Python<'py>, index: isize) -> PyResult<Bound<'py, PyAny>> {
+    /// A value, or for a slice a list of them.
+    fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        if index.is_instance_of::<PySlice>() {
+            return self.tolist(py)?.as_any().get_item(index);
+        }
+        let index: isize = index.extract()?;
         let count = self.array.len();
         let at = if index < 0 { index + count as isize } else { index };
         match usize::try_from(at).ok().filter(|at| *at < count) {

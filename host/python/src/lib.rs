@@ -16,7 +16,11 @@ use std::{
     time::Duration,
 };
 
-use pyo3::{call::PyCallArgs, prelude::*, types::PyList};
+use pyo3::{
+    call::PyCallArgs,
+    prelude::*,
+    types::{IntoPyDict, PyDict},
+};
 use slipfit::{
     cli::{
         self, Failure,
@@ -145,10 +149,10 @@ fn main(py: Python<'_>, arguments: Vec<OsString>, program: Vec<OsString>) -> u8 
     py.detach(|| cli::run(arguments, &program))
 }
 
-/// The names of the shipped scenes.
+/// The shipped scenes: names and texts.
 #[pyfunction]
-fn shipped(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
-    PyList::new(py, slipfit::scene::SHIPPED.iter().map(|(name, _)| *name))
+fn shipped(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    slipfit::scene::SHIPPED.into_py_dict(py)
 }
 
 /// An argument: its name, what its value is called (`None` if it has none), help, whether it may be repeated, and whether it goes by

@@ -108,8 +108,6 @@ def results() -> str:
                 kinds, _ = fields.setdefault(field, ([], meaning))
                 kinds += [one for one in kind.split(" | ") if one not in kinds]
         for field, (kinds, meaning) in fields.items():
-            if keyword.iskeyword(field):
-                continue
             if any(field not in form for form in forms) and "None" not in kinds:
                 kinds.append("None")
             kinds.sort(key=lambda kind: kind == "None")
@@ -117,7 +115,7 @@ def results() -> str:
             if re.search(r"\]\(", text):
                 text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", text)
             lines += ["", *textwrap.wrap(f"    #: {text[0].upper()}{text[1:]}.", 118, subsequent_indent="    #: ")]
-            lines.append(f"    {field}: {' | '.join(kinds)}")
+            lines.append(f"    {python_name(field)}: {' | '.join(kinds)}")
     return "\n".join(lines) + "\n"
 
 
@@ -140,7 +138,7 @@ def commands() -> str:
         "from typing import Any",
         "",
         "from slipfit import results",
-        "from slipfit._call import Found, Option, Table, call, file_of, path_of",
+        "from slipfit._call import Files, Found, Option, Table, call, path_of",
         "from slipfit._progress import Progress",
         "from slipfit._result import Result",
         "",
@@ -202,8 +200,9 @@ def function(name: str, about: str, options, of_scene: bool) -> list[str]:
         lines.append(f"{inner}paths = [path_of(path) for path in {python_name(places[0][0])}]")
         lines.append(f'{inner}return call({result}, "{name}", paths, options, {", ".join(wanted)})')
     else:
-        lines.append(f"{inner}with file_of({python_name(places[0][0])}) as path:")
-        lines.append(f'{inner}    return call({result}, "{name}", [path], options, {", ".join(wanted)})')
+        lines.append(f"{inner}with Files() as files:")
+        lines.append(f"{inner}    path = files.of({python_name(places[0][0])})")
+        lines.append(f'{inner}    return call({result}, "{name}", [path], options, repeated=REPEATED, {", ".join(wanted)})')
     return lines
 
 

@@ -69,6 +69,7 @@ def test_names_and_rows(columns):
     assert columns["left front left"] is columns["left front left (m)"] and "left front left" in columns and "x" not in columns
     with pytest.raises(KeyError, match='there is no column "x"'):
         columns["x"]
+    assert columns["tightness"][3:9:2] == columns["tightness"].tolist()[3:9:2]
     assert columns["tightness"][-1] == columns["tightness"].tolist()[-1]
     for index in (300, -301):
         with pytest.raises(IndexError):

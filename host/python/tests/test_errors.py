@@ -66,7 +66,6 @@ OTHERS = {
     "columns without time": lambda: slipfit.Scene.from_text('[identify]\nmodel = "drive-train"\n').identify({"force (N)": [1.0]}),
     "columns where none are": lambda: slipfit.Scene(SLIDE, {"slide.mass": {"a": [1.0]}}).check(),
     "an output that is a folder": lambda: slipfit.Scene(SLIDE).table(output="/"),
-    "no output": lambda: slipfit.Scene(SLIDE).fmu(),
     "an ending": lambda: slipfit.Scene(SLIDE).kernel(output="kernel.png"),
     "0 threads": lambda: slipfit.Scene(SLIDE).population(threads=0),
     "1.5 units": lambda: slipfit.Scene(SLIDE).population(units=1.5),
@@ -162,3 +161,15 @@ def test_forked_and_spawned_processes(start):
     assert queue.get(timeout=60) == 64
     process.join()
     assert process.exitcode == 0
+
+
+def test_messages_speak_of_keywords_and_columns():
+    with pytest.raises(slipfit.InputError) as caught:
+        slipfit.Scene(SLIDE).population(force_limit="x")
+    assert "force_limit" in str(caught.value) and "--" not in str(caught.value)
+    with pytest.raises(slipfit.InputError) as caught:
+        slipfit.capability({"width": [1.0] * 20 + ["wide"]})
+    assert "columns-1.csv" in str(caught.value) and "tmp" not in str(caught.value) and "--" not in str(caught.value)
+    with pytest.raises(slipfit.SceneError) as caught:
+        slipfit.Scene("clutch", {"measured": {"file": {"a": [1.0]}, "column": [{"of": "b"}]}}).check()
+    assert all("/" not in problem.message for problem in caught.value.problems) and "/" not in str(caught.value)

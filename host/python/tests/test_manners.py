@@ -183,3 +183,35 @@ def test_ten_thousand_calls_keep_their_memory():
     before = pages()
     calls(10_000)
     assert (pages() - before) * 4096 < 8 << 20
+
+
+def test_overrides_are_tables_and_lists_of_tables():
+    mean = {"uncertain.friction.coefficient": {"mean": 0.3, "deviation": 0.005}}
+    assert slipfit.Scene(SLIDE, mean).check().n == 0.0
+    measured = {"measured": {"file": {"a": np.random.default_rng(1).normal(10.0, 0.01, 60)}, "column": [{"of": "a"}]}}
+    found = slipfit.Scene.from_text(STACK, measured).tolerance(samples=2000)
+    assert found.measures[0].sd == pytest.approx(np.hypot(0.01, 0.1 / 3), rel=0.1)
+
+
+def test_texts_of_scenes(here):
+    assert slipfit.Scene(SLIDE).text == slipfit.shipped()[SLIDE] and len(slipfit.shipped()) >= 20
+    Path("own.toml").write_text(STACK, "utf-8")
+    assert slipfit.Scene("own.toml").text == slipfit.Scene.from_text(STACK).text == STACK
+    with pytest.raises(slipfit.InputError, match="cannot read the scene nowhere"):
+        slipfit.Scene("nowhere").text
+
+
+def test_a_data_frame_has_its_index_and_other_columns():
+    frame = pandas.DataFrame({"part": [f"p{k}" for k in range(30)], "width (mm)": np.random.default_rng(1).normal(10.0, 0.01, 30)})
+    frame["good"] = True
+    expected = slipfit.capability(frame, label="part", ignore=["good"])
+    assert slipfit.capability(frame.set_index("part"), label="part", ignore=["good"]) == expected
+
+
+def test_a_field_whose_name_is_a_keyword():
+    measure = slipfit.Scene("clutch").tolerance(samples=500).measures[0]
+    assert measure.yield_ == measure["yield"]
+
+
+def test_whole_numbers_as_floats():
+    assert slipfit.Scene(DRAWING).population(units=64.0) == slipfit.Scene(DRAWING).population(units=64)

@@ -6,14 +6,16 @@ import contextlib
 import csv
 import json
 import os
+import re
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import TracebackType
 from typing import Any, TypeVar, Union
 
 from slipfit import _slipfit
-from slipfit._errors import InputError
+from slipfit._errors import InputError, Problem, SceneError, SlipfitError
 from slipfit._progress import Progress, line
 from slipfit._result import Result
 
@@ -31,7 +33,7 @@ def words(options: Mapping[str, Option], repeated: frozenset[str]) -> list[str]:
     for name, value in options.items():
         option = "--" + name.rstrip("_").replace("_", "-")
         value = plain(value)
-        if value is None or value is False:
+        if value is None or value is False or (isinstance(value, (list, tuple)) and not value):
             continue
         if value is True:
             all_words.append(option)
@@ -51,7 +53,8 @@ def plain(value: Any) -> Any:
 def _word(value: object) -> str:
     value = plain(value)
     if isinstance(value, float):
-        return float.__repr__(value)
+        # 1e2 units are 100.
+        return str(int(value)) if value.is_integer() and abs(value) < 2**53 else float.__repr__(value)
     if isinstance(value, (str, int)) and not isinstance(value, bool):
         return str(value)
     if isinstance(value, os.PathLike):
@@ -71,20 +74,50 @@ def is_table(value: object) -> bool:
     return isinstance(value, Mapping) or (any(hasattr(value, name) for name in ("keys", "columns")) and not hasattr(value, "tolist"))
 
 
-@contextlib.contextmanager
-def file_of(table: Table) -> Iterator[str]:
-    """The path of a file with these columns: CSV, which is gone afterwards, unless it is a file anyway."""
-    if not is_table(table):
-        yield path_of(table)
-        return
-    with tempfile.TemporaryDirectory(prefix="slipfit-") as folder:
-        path = Path(folder, "columns.csv")
-        write_table(path, table)
-        yield str(path)
+class Files:
+    """Columns as CSV files, which are gone afterwards. Messages call them "columns"."""
+
+    def __init__(self) -> None:
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._count = 0
+
+    def __enter__(self) -> Files:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        if self._folder is None:
+            return
+        self._folder.cleanup()
+        if isinstance(error, SlipfitError):
+            error.args = _without(error.args, self._folder.name + os.sep)
+            if isinstance(error, SceneError):
+                error.problems = [Problem(*_without(tuple(problem), self._folder.name + os.sep)) for problem in error.problems]
+
+    def of(self, table: Table) -> str:
+        """The path of a file with these columns, or of this file."""
+        if not is_table(table):
+            return path_of(table)
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="slipfit-")
+        self._count += 1
+        path = Path(self._folder.name, f"columns-{self._count}.csv")
+        _write(path, table)
+        return str(path)
 
 
-def write_table(path: Path, table: Any) -> None:
-    """Writes columns as CSV."""
+def _without(value: Any, folder: str) -> Any:
+    """Texts without the name of a folder that nobody knows."""
+    if isinstance(value, str):
+        return value.replace(folder, "")
+    return type(value)(_without(one, folder) for one in value) if type(value) in (list, tuple) else value
+
+
+def _write(path: Path, table: Any) -> None:
+    """Writes columns as CSV; the index of a data frame, if it has a name."""
+    if any(name is not None for name in getattr(getattr(table, "index", None), "names", ())):
+        table = table.reset_index()
     names = [str(name) for name in (table.keys() if hasattr(table, "keys") else table.columns)]
     columns = [plain(table[name]) for name in names]
     columns = [column.to_list() if hasattr(column, "to_list") else column for column in columns]
@@ -93,12 +126,23 @@ def write_table(path: Path, table: Any) -> None:
             raise InputError(f"the column {name!r} is {column!r}, allowed is a list or an array with one dimension")
         if len(column) != len(columns[0]):
             raise InputError(f"the column {name!r} has {len(column)} values, the first column has {len(columns[0])}")
-        if any(isinstance(one, (list, tuple)) for one in column):
-            raise InputError(f"the column {name!r} has lists as values, allowed is an array with one dimension")
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(names)
-        writer.writerows([["" if one is None else _word(one) for one in row] for row in zip(*columns)])
+        writer.writerows([[_cell(name, one) for name, one in zip(names, row)] for row in zip(*columns)])
+
+
+def _cell(name: str, value: object) -> str:
+    """A value of a column as CSV has it."""
+    if value is None:
+        return ""
+    if isinstance(value, float):
+        return float.__repr__(value)
+    if isinstance(value, (str, int)):
+        return str(value)
+    if hasattr(value, "isoformat"):
+        return str(value.isoformat())
+    raise InputError(f"the column {name!r} has the value {value!r}, allowed are numbers, texts and times")
 
 
 def in_notebook() -> bool:
@@ -156,6 +200,12 @@ def run(
     tell = progress if callable(progress) else shown
     try:
         return _slipfit.call(arguments, scene, columns, draws, tell)
+    except InputError as error:
+        if not isinstance(error, SceneError):
+            # Options are keywords here.
+            text = str(error).split("\n\nFor more information")[0]
+            error.args = (re.sub(r"--([a-z]+(?:-[a-z]+)*)", lambda option: option[1].replace("-", "_"), text),)
+        raise
     finally:
         if shown is not None:
             shown.end()

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from slipfit import results
-from slipfit._call import Found, Option, Table, call, file_of, path_of
+from slipfit._call import Files, Found, Option, Table, call, path_of
 from slipfit._progress import Progress
 from slipfit._result import Result
 
@@ -606,8 +606,9 @@ def capability(
         WorkError: Valid input without a result, such as a full disk.
     """
     options: dict[str, Option] = {"group": group, "label": label, "ignore": ignore, "family": family, "page": page}
-    with file_of(file) as path:
-        return call(results.Capability, "capability", [path], options, progress=progress)
+    with Files() as files:
+        path = files.of(file)
+        return call(results.Capability, "capability", [path], options, repeated=REPEATED, progress=progress)
 
 
 def merge(

@@ -25,7 +25,7 @@ class Result:
 
     def __init__(self, fields: Mapping[str, Any], pictures: Mapping[str, str] | None = None) -> None:
         kinds = _kinds(type(self))
-        self._fields = {name: _converted(value, kinds.get(name, Any)) for name, value in fields.items()}
+        self._fields = {name: _converted(value, kinds.get(name) or kinds.get(name + "_", Any)) for name, value in fields.items()}
         self.pictures = dict(pictures or {})
 
     def __getitem__(self, key: str) -> Any:
@@ -42,10 +42,13 @@ class Result:
 
     def __getattr__(self, name: str) -> Any:
         # Not of a result that is being unpickled and has no fields yet.
-        if name != "_fields" and name in self._fields:
-            return self._fields[name]
-        if not name.startswith("_") and name in _kinds(type(self)):
-            return None
+        if name != "_fields":
+            # A field whose name is a keyword of Python, such as yield, is yield_ as an attribute.
+            field = name[:-1] if name.endswith("_") and name[:-1] in self._fields else name
+            if field in self._fields:
+                return self._fields[field]
+            if not name.startswith("_") and name in _kinds(type(self)):
+                return None
         raise AttributeError(f"the result has no field {name!r}, it has {', '.join(self.__dict__.get('_fields', ()))}")
 
     def __dir__(self) -> list[str]:
@@ -55,8 +58,7 @@ class Result:
         return isinstance(other, Result) and self._fields == other._fields
 
     def __repr__(self) -> str:
-        title = f" {self._fields['title']!r}" if "title" in self._fields else ""
-        return f"<{type(self).__name__}{title}: {', '.join(self._fields)}>"
+        return f"<{type(self).__name__}: {', '.join(f'{name} {_short(value, 60)}' for name, value in self._fields.items())}>"
 
     def _repr_html_(self) -> str:
         rows = (
@@ -71,22 +73,32 @@ class Result:
         return plain
 
     def plot(self, *names: str) -> Any:
-        """Draws columns over the first one with matplotlib, which has to be installed: those of these ``names``, or all numbers.
+        """Draws columns with matplotlib, which has to be installed: those of these ``names``, or the first six that are numbers.
 
-        Returns the figure.
+        They are drawn over time or level, those of units as histograms. Returns the figure.
         """
         columns = self._fields.get("columns")
         if not isinstance(columns, Columns):
             raise AttributeError("the result has no columns to draw")
         plt: Any = importlib.import_module("matplotlib.pyplot")
         first, *rest = columns.values()
-        drawn = [columns[name] for name in names] or [column for column in rest if isinstance(column[0], float)]
-        figure, axes = plt.subplots(len(drawn), sharex=True, squeeze=False, figsize=(7, 1.8 * len(drawn)), layout="constrained")
+        numbers = [column for column in rest if isinstance(column[0], float)]
+        drawn = [columns[name] for name in names] or numbers[:MOST_DRAWN]
+        figure, axes = plt.subplots(len(drawn), sharex=first.name != "unit", squeeze=False, figsize=(7, 1.8 * len(drawn)), layout="constrained")
         for axis, column in zip(axes[:, 0], drawn):
-            axis.plot(first.tolist(), column.tolist())
-            axis.set_ylabel(_labelled(column))
-        axes[-1, 0].set_xlabel(_labelled(first))
+            if first.name == "unit":
+                axis.hist([number for number in column.tolist() if number is not None], bins=50)
+                axis.set_xlabel(_labelled(column))
+                axis.set_ylabel("units")
+            else:
+                axis.plot(first.tolist(), column.tolist())
+                axis.set_ylabel(_labelled(column))
+                axis.set_xlabel(_labelled(first) if column is drawn[-1] else "")
         return figure
+
+
+#: Columns that are drawn if none is named.
+MOST_DRAWN = 6
 
 
 def _labelled(column: Column) -> str:
@@ -141,7 +153,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _short(value: Any) -> str:
+def _short(value: Any, most: int = 200) -> str:
     if isinstance(value, Columns):
         text = f"{value.rows} rows of {', '.join(value)}"
     elif isinstance(value, Result):
@@ -149,7 +161,7 @@ def _short(value: Any) -> str:
     elif isinstance(value, dict):
         text = ", ".join(f"{name} {_short(one)}" for name, one in value.items())
     elif isinstance(value, list):
-        text = ", ".join(_short(one) for one in value)
+        text = f"[{', '.join(_short(one) for one in value)}]"
     else:
         text = f"{value:.6g}" if isinstance(value, float) else str(value)
-    return text if len(text) <= 200 else text[:199] + "…"
+    return text if len(text) <= most else text[: most - 1] + "…"

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import Any
 
-from slipfit import results
-from slipfit._call import Found, Option, Table, call, is_table, path_of, plain, run, words, write_table
+from slipfit import _slipfit, results
+from slipfit._call import Files, Found, Option, Table, call, is_table, path_of, plain, run, words
 from slipfit._command import PROGRAM
 from slipfit._commands import REPEATED, SceneCommands
 from slipfit._errors import InputError, WorkError
 from slipfit._progress import Progress
 
 
-def _toml(value: Any) -> str:
-    """An override's value as TOML."""
+def _toml(key: str, value: Any, files: Files | None) -> str:
+    """The value of a key as TOML. Columns become one of the ``files``, where the key asks for a file."""
     value = plain(value)
+    if files is not None and is_table(value) and key.rpartition(".")[2] == "file":
+        return _toml(key, files.of(value), None)
+    if isinstance(value, Mapping):
+        return "{{{}}}".format(", ".join(f"{_key(name)} = {_toml(_key(name), one, files)}" for name, one in value.items()))
     if isinstance(value, (bool, str)):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, float):
@@ -30,15 +32,22 @@ def _toml(value: Any) -> str:
     if isinstance(value, int):
         return repr(value)
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(_toml(one) for one in value)}]"
-    raise InputError(f"an override is {value!r}, allowed are numbers, texts, lists, and columns where a file is asked for")
+        return f"[{', '.join(_toml(key, one, files) for one in value)}]"
+    allowed = "allowed are numbers, texts, lists, dicts, and columns where a file is asked for"
+    raise InputError(f"the override {key} is {value!r}, {allowed}")
+
+
+def _key(name: object) -> str:
+    if not isinstance(name, str):
+        raise InputError(f"a key is {name!r}, allowed is a str")
+    return name
 
 
 class Scene(SceneCommands):
     """A scene: a file (TOML), a shipped scene by its name, or a text (:meth:`from_text`).
 
-    ``overrides`` set keys, as ``--set`` does: numbers in the key's unit, texts with their unit such as ``"90 g"``, lists. Where a key
-    asks for a file of measured parts, columns will do: a dict of names and arrays, or a data frame. They are passed as CSV.
+    ``overrides`` set keys, as ``--set`` does: numbers in the key's unit, texts with their unit such as ``"90 g"``, lists, dicts. Where a
+    key asks for a file of columns, such as ``measured.file``, a dict of names and arrays or a data frame will do.
     The scene is read anew by each command. Mistakes in it raise :class:`SceneError`.
     """
 
@@ -64,6 +73,18 @@ class Scene(SceneCommands):
         scene._text = self._text
         return scene
 
+    @property
+    def text(self) -> str:
+        """The scene's text (TOML), without the overrides."""
+        if self._text is not None:
+            return self._text
+        if not Path(self._source).is_file() and self._source in (scenes := _slipfit.shipped()):
+            return scenes[self._source]
+        try:
+            return Path(self._source).read_text("utf-8")
+        except (OSError, UnicodeError) as error:
+            raise InputError(f"cannot read the scene {self._source}: {error}") from None
+
     def __repr__(self) -> str:
         return f"Scene({self._source!r}, {self._overrides!r})"
 
@@ -73,22 +94,10 @@ class Scene(SceneCommands):
     def _call(
         self, kind: type[Found], command: str, options: Mapping[str, Option], others: Sequence[Table] = (), **wanted: Any
     ) -> Found:
-        with contextlib.ExitStack() as stack:
-            sets, paths = [], [path_of(one) for one in others if not is_table(one)]
-            folder = Path(stack.enter_context(TemporaryDirectory(prefix="slipfit-"))) if self._has_tables(others) else None
-            for number, (key, value) in enumerate([*self._overrides.items(), *(("", one) for one in others if is_table(one))]):
-                if folder is not None and is_table(value):
-                    write_table(path := folder / f"columns-{number}.csv", value)
-                    value = str(path)
-                    if not key:
-                        paths.append(value)
-                        continue
-                sets.append(f"{key}={_toml(value)}")
-            first = [self._source, *paths]
+        with Files() as files:
+            sets = [f"{_key(key)}={_toml(key, value, files)}" for key, value in self._overrides.items()]
+            first = [self._source, *(files.of(one) for one in others)]
             return call(kind, command, first, {"set": sets, **options}, repeated=REPEATED, scene=self._text, **wanted)
-
-    def _has_tables(self, others: Sequence[Table]) -> bool:
-        return any(is_table(one) for one in (*self._overrides.values(), *others))
 
     def identify(
         self,
@@ -124,7 +133,7 @@ class Scene(SceneCommands):
         """Serves a page of the scene's file, which follows each save, until it is stopped: the command ``watch``."""
         if self._text is not None:
             raise InputError("only a file can be watched; this scene is a text")
-        sets = [f"{key}={_toml(value)}" for key, value in self._overrides.items()]
+        sets = [f"{_key(key)}={_toml(key, value, None)}" for key, value in self._overrides.items()]
         return Watch(["watch", *words({"set": sets, "port": port}, REPEATED), "--", self._source])
 
     @staticmethod

@@ -69,6 +69,9 @@ class Gap(Result):
     #: Gap (mm), negative where parts are compressed.
     mm: float
 
+    #: Compressed (negative), zero (within 1e-9 mm of 0), free (positive).
+    class_: str
+
 
 class Closing(Result):
     """Closing."""
@@ -2069,6 +2072,9 @@ class Measure(Result):
     #: standard error.
     dpm: list[Defects | None]
 
+    #: Share within the limits, counted.
+    yield_: float | None
+
     #: Taguchi's loss, if the scene states one.
     loss: Loss | None
 
@@ -2140,6 +2146,9 @@ class Estimates(Result):
 
     #: Defects per million above the upper limit, counted.
     dpm_above: Estimate | None
+
+    #: As in measure.
+    yield_: Estimate | None
 
 
 class Defects(Result):
