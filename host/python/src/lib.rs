@@ -83,7 +83,7 @@ fn call(
     let running = call.clone();
     let work = thread::Builder::new().name("slipfit".into()).spawn(move || {
         // Nobody listens only if the interpreter is gone.
-        let _ = send.send(running.run());
+        let _ = send.send(cli::answer(&running));
     })?;
     let mut told = None;
     let mut tell = || {

@@ -7,11 +7,10 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
-use clap::Parser;
 use indicatif::ProgressBar;
 use slipfit_system::files;
 
-use super::{Cli, Command, failure::Failure};
+use super::failure::Failure;
 use crate::show::columns::Columns;
 
 /// A command that another program calls.
@@ -70,24 +69,6 @@ impl Call {
         Arc::new(Self { arguments, scene, wanted, answer: Mutex::default(), bar: Mutex::default() })
     }
 
-    /// Runs the command. Nothing is printed.
-    ///
-    /// # Errors
-    /// [`Failure`], also for arguments that the command does not have.
-    pub fn run(self: &Arc<Self>) -> Result<Answer, Failure> {
-        let arguments = std::iter::once("slipfit".into()).chain(self.arguments.iter().cloned());
-        let cli = Cli::try_parse_from(arguments).map_err(|wrong| {
-            let text = wrong.render().to_string();
-            let text = text.split("\n\nUsage:").next().unwrap_or_default();
-            Failure::Input(text.trim().trim_start_matches("error: ").to_owned())
-        })?;
-        if let Some(Command::Watch(_)) = cli.command {
-            return Err(Failure::Input("watch: it serves a page until it is stopped, and returns nothing".into()));
-        }
-        within(Some(self.clone()), || cli.execute())?;
-        Ok(std::mem::take(&mut *locked(&self.answer)))
-    }
-
     /// How far it is; `None` before its work begins.
     pub fn progress(&self) -> Option<Progress> {
         let bar = locked(&self.bar);
@@ -110,6 +91,11 @@ impl Call {
             Some(all) => all.append(&columns),
             None => *all = Some(columns),
         }
+    }
+
+    /// The arguments of the command.
+    pub fn arguments(&self) -> &[OsString] {
+        &self.arguments
     }
 
     /// The answer so far.

@@ -30,11 +30,12 @@ mod terminal;
 mod tolerance;
 mod watch;
 
-use std::{ffi::OsString, io::IsTerminal, process::ExitCode};
+use std::{ffi::OsString, io::IsTerminal, process::ExitCode, sync::Arc};
 
 use clap::{CommandFactory, Parser, Subcommand};
 use slipfit_system::interrupt;
 
+use self::call::{Answer, Call};
 pub use self::failure::Failure;
 use self::terminal::{print, tell, write_out};
 
@@ -131,6 +132,24 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, program: &[OsString]) 
             if matches!(failure, Failure::Work(_)) { 1 } else { 2 }
         }
     }
+}
+
+/// Runs a command that another program calls. Nothing is printed.
+///
+/// # Errors
+/// [`Failure`], also for arguments that the command does not have.
+pub fn answer(call: &Arc<Call>) -> Result<Answer, Failure> {
+    let arguments = std::iter::once("slipfit".into()).chain(call.arguments().iter().cloned());
+    let cli = Cli::try_parse_from(arguments).map_err(|wrong| {
+        let text = wrong.render().to_string();
+        let text = text.split("\n\nUsage:").next().unwrap_or_default();
+        Failure::Input(text.trim().trim_start_matches("error: ").to_owned())
+    })?;
+    if let Some(Command::Watch(_)) = cli.command {
+        return Err(Failure::Input("watch: it serves a page until it is stopped, and returns nothing".into()));
+    }
+    call::within(Some(call.clone()), || cli.execute())?;
+    Ok(std::mem::take(&mut *call.answer()))
 }
 
 impl Cli {
