@@ -98,13 +98,13 @@ fn wheels(tools: &Tools, free_threaded: Option<&Path>, into: &Path) -> anyhow::R
 fn materials(tools: &Tools, into: &Path) -> anyhow::Result<()> {
     let name = format!("slipfit-{}.cdx", env!("CARGO_PKG_VERSION"));
     let mut list = tools.cyclonedx()?;
-    list.args(["cyclonedx", "--format", "json", "--describe", "crate", "--override-filename", &name]);
+    list.args(["cyclonedx", "--format", "json", "--override-filename", &name]);
     run(list.arg("--manifest-path").arg(Path::new(ROOT).join("host/Cargo.toml")))?;
-    // The tool writes it beside the crate's manifest.
+    // The tool writes one for each crate of the workspace, beside its manifest.
     let name = format!("{name}.json");
     let own = Path::new(ROOT).join("host").join(&name);
     std::fs::copy(&own, into.join(&name)).with_context(|| own.display().to_string())?;
-    Ok(std::fs::remove_file(own)?)
+    tools::members()?.iter().map(|folder| Ok(std::fs::remove_file(folder.join(&name))?)).collect()
 }
 
 /// SHA-256 of every file in a `folder`, in the form that `sha256sum --check` reads.

@@ -55,6 +55,15 @@ pub fn target_folder() -> anyhow::Result<PathBuf> {
     Ok(own.ancestors().nth(2).context("the program lies in no folder of Cargo's")?.to_owned())
 }
 
+/// The folders of the workspace's crates.
+pub fn members() -> anyhow::Result<Vec<PathBuf>> {
+    let mut command = Command::new("cargo");
+    let output = command.args(["metadata", "--no-deps", "--format-version", "1"]).current_dir(ROOT).output()?;
+    let about: serde_json::Value = serde_json::from_slice(&output.stdout).context("cargo metadata")?;
+    let manifests = about["packages"].as_array().into_iter().flatten().filter_map(|one| one["manifest_path"].as_str());
+    Ok(manifests.filter_map(|path| Path::new(path).parent()).map(Path::to_owned).collect())
+}
+
 /// Runs a program, which has to succeed.
 pub fn run(command: &mut Command) -> anyhow::Result<()> {
     eprintln!("{command:?}");
