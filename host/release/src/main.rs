@@ -104,7 +104,7 @@ fn materials(tools: &Tools, into: &Path) -> anyhow::Result<()> {
     let name = format!("{name}.json");
     let own = Path::new(ROOT).join("host").join(&name);
     std::fs::copy(&own, into.join(&name)).with_context(|| own.display().to_string())?;
-    tools::members()?.iter().map(|folder| Ok(std::fs::remove_file(folder.join(&name))?)).collect()
+    tools::members()?.iter().try_for_each(|folder| Ok(std::fs::remove_file(folder.join(&name))?))
 }
 
 /// SHA-256 of every file in a `folder`, in the form that `sha256sum --check` reads.
