@@ -86,7 +86,7 @@ fn c_projects_find_the_library_by_cmake_and_by_pkg_config() {
     write(folder.join("program.c"), PROGRAM);
     write(
         folder.join("CMakeLists.txt"),
-        "cmake_minimum_required(VERSION 3.20)\nproject(program LANGUAGES C)\nfind_package(slipfit 0.1 REQUIRED)\n\
+        "cmake_minimum_required(VERSION 3.20)\nproject(program LANGUAGES C)\nfind_package(slipfit 0.2 REQUIRED)\n\
          add_executable(program program.c)\ntarget_link_libraries(program PRIVATE slipfit::slipfit)\n",
     );
     run("cmake", &["-S", ".", "-B", "by-cmake", &format!("-DCMAKE_PREFIX_PATH={}", prefix.display())]);
