@@ -1,6 +1,6 @@
 //! Results as named columns: what a CSV file or a data frame holds.
 
-use std::{borrow::Cow, collections::BTreeMap, io, io::Write};
+use std::{borrow::Cow, io, io::Write};
 
 use slipfit_tolerance::number::ten_digits;
 
@@ -44,15 +44,8 @@ pub struct Words {
 impl FromIterator<Option<String>> for Words {
     fn from_iter<I: IntoIterator<Item = Option<String>>>(words: I) -> Self {
         let mut all = Self::default();
-        let mut known = BTreeMap::new();
         for word in words {
-            let index = word.map(|word| {
-                let next = all.kinds.len() as i32;
-                *known.entry(word).or_insert_with_key(|word| {
-                    all.kinds.push(word.clone());
-                    next
-                })
-            });
+            let index = word.map(|word| all.index(&word));
             all.rows.push(index);
         }
         all
@@ -60,15 +53,17 @@ impl FromIterator<Option<String>> for Words {
 }
 
 impl Words {
+    /// The index of a kind, which is added if it is new.
+    fn index(&mut self, kind: &str) -> i32 {
+        let known = self.kinds.iter().position(|known| known == kind);
+        known.unwrap_or_else(|| {
+            self.kinds.push(kind.to_owned());
+            self.kinds.len() - 1
+        }) as i32
+    }
+
     fn append(&mut self, more: &Self) {
-        let mut index = |kind: &String| {
-            let known = self.kinds.iter().position(|known| known == kind);
-            known.unwrap_or_else(|| {
-                self.kinds.push(kind.clone());
-                self.kinds.len() - 1
-            }) as i32
-        };
-        let indices: Vec<_> = more.kinds.iter().map(&mut index).collect();
+        let indices: Vec<_> = more.kinds.iter().map(|kind| self.index(kind)).collect();
         self.rows.extend(more.rows.iter().map(|row| row.map(|row| indices[row as usize])));
     }
 }

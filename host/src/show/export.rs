@@ -63,7 +63,7 @@ pub fn of_units(subject: &dyn Subject, units: &[Unit]) -> Columns {
 }
 
 /// Names of a run's figures and their units; of a drive of this `kind`.
-pub fn figure_names(kind: DriveKind) -> [(&'static str, &'static str); 9] {
+fn figure_names(kind: DriveKind) -> [(&'static str, &'static str); 9] {
     let choose = |name: [&'static str; 2], unit: [&'static str; 2]| {
         (kind.choose(name[0], name[1]), kind.choose(unit[0], unit[1]))
     };
