@@ -31,7 +31,7 @@ use slipfit::{
 
 use self::{column::Column, columns::Columns};
 
-/// How often a running command looks for Ctrl-C and tells how far it is.
+/// How often a running command looks for Ctrl-C and reports its progress.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// An exception of the module `slipfit._errors` with these arguments.
@@ -155,8 +155,8 @@ fn shipped(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     slipfit::scene::SHIPPED.into_py_dict(py)
 }
 
-/// An argument: its name, what its value is called (`None` if it has none), help, whether it may be repeated, and whether it goes by
-/// its place.
+/// An argument: its name, what its value is called (`None` if it has none), help, whether it may be repeated, and whether it has no
+/// option but a place.
 type Argument = (String, Option<String>, String, bool, bool);
 
 /// The names of the commands, what each does, and its arguments.

@@ -111,10 +111,10 @@ def results() -> str:
             if any(field not in form for form in forms) and "None" not in kinds:
                 kinds.append("None")
             kinds.sort(key=lambda kind: kind == "None")
-            text = meaning.replace("\\", "").replace("`", "``")
+            text = re.sub(r"\bnull\b", "None", meaning.replace("\\", "").replace("`", "``"))
             if re.search(r"\]\(", text):
                 text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", text)
-            lines += ["", *textwrap.wrap(f"    #: {text[0].upper()}{text[1:]}.", 118, subsequent_indent="    #: ")]
+            lines += [*textwrap.wrap(f"    #: {text[0].upper()}{text[1:]}.", 118, subsequent_indent="    #: ")]
             lines.append(f"    {python_name(field)}: {' | '.join(kinds)}")
     return "\n".join(lines) + "\n"
 
@@ -176,17 +176,18 @@ def function(name: str, about: str, options, of_scene: bool) -> list[str]:
     column = COLUMNS.get(name)
     has_picture = any(option in ("plot", "plots") for option, *_ in keywords)
     asked = column is not None and name not in ("simulate", "sweep")
+    shown = [one for one in keywords if not is_column(column, asked, one[0])]
     signature = ["self"] if of_scene else []
     signature += [f"{python_name(option)}: {'Sequence[Table]' if many else 'Table'}" for option, _, _, many, _ in places]
     signature.append("*")
-    signature += [f"{python_name(option)}: {option_type(value)}" for option, value, *_ in keywords if not is_column(column, asked, option)]
+    signature += [f"{python_name(option)}: {option_type(value)}" for option, value, *_ in shown]
     signature += [f"{column[0]}: bool = False"] if asked else []
     signature += ["picture: bool | None = None"] if has_picture else []
     signature.append("progress: Progress = None")
     lines = ["", *([] if of_scene else [""]), f"{indent}def {name}("]
     lines += [f"{indent}    {one}," for one in signature] + [f"{indent}) -> {result}:"]
-    lines += docstring(about, [*places, *keywords], column if asked else None, has_picture, indent + "    ")
-    passed = ", ".join(f'"{option.replace("-", "_")}": {python_name(option)}' for option, *_ in keywords if not is_column(column, asked, option))
+    lines += docstring(about, [*places, *shown], column if asked else None, has_picture, of_scene, indent + "    ")
+    passed = ", ".join(f'"{option.replace("-", "_")}": {python_name(option)}' for option, *_ in shown)
     wanted = []
     if column is not None:
         wanted.append(f"{column[0]}={column[0] if asked else True}")
@@ -220,20 +221,26 @@ def option_type(value: str | None) -> str:
     return "bool = False" if value is None else "Option = None"
 
 
-def docstring(about: str, arguments, column, has_picture: bool, indent: str) -> list[str]:
-    first, *rest = about.split("\n\n")
+def keyword_of(text: str) -> str:
+    """Help of the command line, in which options are keywords and repeated ones lists."""
+    text = re.sub(r"`?--([a-z]+(?:-[a-z]+)*)`?", lambda option: f"`{option[1].replace('-', '_')}`", text)
+    return text.replace("; may be repeated", "; or a list of them")
+
+
+def docstring(about: str, arguments, column, has_picture: bool, of_scene: bool, indent: str) -> list[str]:
+    first, *rest = keyword_of(about).split("\n\n")
     text = [first.replace("\n", " ").strip()]
     for paragraph in rest:
         text += ["", paragraph.replace("\n", " ").strip()]
     text += ["", "Args:"]
     for option, value, help_text, *_ in arguments:
         name = python_name(option)
-        text.append(f"    {name}: {' '.join(help_text.split()).rstrip('.')}.")
+        text.append(f"    {name}: {keyword_of(' '.join(help_text.split())).rstrip('.')}.")
     text += [f"    {column[0]}: Whether the result has {column[1].split(';')[0]}."] if column else []
     text += ["    picture: Whether the result has pictures; if None, in notebooks."] if has_picture else []
     text += ["    progress: A function, or whether a line on standard error says how far it is.", "", "Raises:"]
+    text += ["    SceneError: A mistake in the scene, with file, line, column and what is allowed."] if of_scene else []
     text += [
-        "    SceneError: A mistake in the scene, with file, line, column and what is allowed.",
         "    InputError: Another argument that is not allowed.",
         "    WorkError: Valid input without a result, such as a full disk.",
     ]

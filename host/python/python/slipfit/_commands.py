@@ -114,8 +114,7 @@ class SceneCommands:
         """Shows how measures vary: Monte Carlo, worst case, RSS, contributors, capability.
 
         For scenes with a product. Where the scene has a slide as well, the output ends with the clearances of its
-        pins at the level `--n`. Of a slide with stated gaps it shows the gaps and these clearances, and draws
-        nothing.
+        pins at the level `n`. Of a slide with stated gaps it shows the gaps and these clearances, and draws nothing.
 
         Args:
             samples: Units to draw, in each replicate; if not given 5000.
@@ -125,11 +124,10 @@ class SceneCommands:
             seed: Seed of the production; if not given 1. The same scene, seed and number give the same unit on every
                 machine.
             threads: Number of threads; all cores if not given. The result does not depend on it.
-            shard: Works on part I of N and writes it to `--out`; `slipfit merge` joins the parts. I is 1 to N. `auto`
+            shard: Works on part I of N and writes it to `out`; `slipfit merge` joins the parts. I is 1 to N. `auto`
                 takes the part of this task in a SLURM job array.
             out: Writes the results of the units to a file that `slipfit merge` reads.
-            resume: Continues where an interrupted run with the same `--out` stopped.
-            draws: Writes the measures of every unit as CSV.
+            resume: Continues where an interrupted run with the same `out` stopped.
             n: Tolerance level at which a slide's clearances are shown; positive is tighter. The default is the level
                 that closes the first pair of gaps, to a hundredth: 3.43 for the paper's slide.
             csv: Writes the measures' statistics as CSV.
@@ -164,7 +162,7 @@ class SceneCommands:
         """Chooses the cheapest tolerances that meet the requirements.
 
         A requirement limits how measures vary, or how many units of a slide malfunction. It stands in the scene
-        (`require` of a measure, `[allocate]`) or follows `--require`. Tolerances with a `cost` are chosen, the others
+        (`require` of a measure, `[allocate]`) or follows `require`. Tolerances with a `cost` are chosen, the others
         stay as they are. Where even the tightest tolerances do not meet a requirement, the command says by how much
         and exits with 1.
 
@@ -174,7 +172,7 @@ class SceneCommands:
                 yield=0.999, the share of units with all measures within their limits. For the units of a slide:
                 malfunction=0.01, the permitted share of units that crawl or jam over the whole stroke.
             force_limit: Greatest force (N) of the motor; units that need more count as malfunctioning. Only together
-                with `--require malfunction=SHARE`.
+                with `require` malfunction=SHARE`.
             units: Units to simulate for every set of tolerances that is tried. Only for requirements on malfunction.
                 The tolerances found are confirmed with eight times as many other units, or more if the share is
                 small. More units find cheaper tolerances and take longer.
@@ -218,13 +216,13 @@ class SceneCommands:
     ) -> results.Simulation:
         """Simulates one unit: speed and drive force over time.
 
-        For slides and mechanisms. The unit is that of a tolerance level (`--n`) or one of the production (`--unit`).
-        A slide runs its opening (`run.duration`) unless `--stroke` is given. The desk computes the run by error-
-        controlled steps. It also says how far the controller is off, which takes steps of one length. With `--step`,
-        `--integrator`, `--scalar` or `--audit` the run shown is the controller's, and its error against the desk's is
+        For slides and mechanisms. The unit is that of a tolerance level (`n`) or one of the production (`unit`). A
+        slide runs its opening (`run.duration`) unless `stroke` is given. The desk computes the run by error-
+        controlled steps. It also says how far the controller is off, which takes steps of one length. With `step`,
+        `integrator`, `scalar` or `audit` the run shown is the controller's, and its error against the desk's is
         printed.
 
-        For slides only: `--audit`, `--stroke`, `--scalar`.
+        For slides only: `audit`, `stroke`, `scalar`.
 
         Args:
             n: Tolerance level, for all gaps or one for each; positive is tighter. One for each gap is a list with
@@ -232,10 +230,10 @@ class SceneCommands:
                 scene has that gap or not. A mechanism takes them in the order in which `slipfit check` lists its
                 gaps.
             unit: Number of a unit of the production, instead of a tolerance level. The units are those of `slipfit
-                population`, which runs the whole stroke: add `--stroke` for the same run.
-            seed: Seed of the production, for `--unit`.
-            correlation: Correlation between the gaps, for `--unit`. It holds for any two gaps that the scene states
-                by mean and standard deviation.
+                population`, which runs the whole stroke: add `stroke` for the same run.
+            seed: Seed of the production, for `unit`.
+            correlation: Correlation between the gaps, for `unit`. It holds for any two gaps that the scene states by
+                mean and standard deviation.
             csv: Writes the run as CSV, in SI units. Of a slide the columns are time, speed and force along the drive,
                 displacement of the centre of mass. Of a mechanism they are time, the force of each drive, and the
                 motion of each body. Their heads have units.
@@ -285,23 +283,23 @@ class SceneCommands:
         """Simulates a slide or a mechanism at many tolerance levels, or values of any key: where does it run, crawl,
         jam?
 
-        A slide runs its opening (`run.duration`) unless `--stroke` is given; a mechanism runs for `run.duration`, or
-        to the end of its stroke. The desk computes the runs by error-controlled steps. With `--step`, `--integrator`
-        or `--scalar` the controller computes them by steps of one length, and a warning names the levels whose runs
-        cannot be trusted.
+        A slide runs its opening (`run.duration`) unless `stroke` is given; a mechanism runs for `run.duration`, or to
+        the end of its stroke. The desk computes the runs by error-controlled steps. With `step`, `integrator` or
+        `scalar` the controller computes them by steps of one length, and a warning names the levels whose runs cannot
+        be trusted.
 
-        For slides only: `--step`, `--integrator`, `--scalar`, `--stroke`.
+        For slides only: `step`, `integrator`, `scalar`, `stroke`.
 
         Args:
             drive: Name of the drive, where a mechanism has several.
             n: Tolerance levels from A to B, such as -3:5:0.1, or one level; positive is tighter. If not given, the
                 levels are the scene's `sweep.n`.
             over: Goes over the values of a key of the scene, from A to B, such as friction.coefficient=0.1:0.4:0.02;
-                given twice, over two keys. A key is any that `--set` takes with a number, in the key's unit, or n,
-                the tolerance level. At each value, or combination of two, the unit of level n = 0 or of the one `--n`
-                is simulated.
-            units: Units of the production to simulate at every value of `--over`: which share of them malfunctions.
-                The units are the same at every value. A slide's run the opening unless `--stroke` is given.
+                given twice, over two keys. A key is any that `set` takes with a number, in the key's unit, or n, the
+                tolerance level. At each value, or combination of two, the unit of level n = 0 or of the one `n` is
+                simulated.
+            units: Units of the production to simulate at every value of `over`: which share of them malfunctions. The
+                units are the same at every value. A slide's run the opening unless `stroke` is given.
             csv: Writes a row of figures for every level, or value, as CSV.
             plot: Draws verdict and force over the tolerance level, or over the keys, as SVG.
             stroke: Runs the whole stroke (run.stroke) instead of the opening (run.duration); for slides.
@@ -351,10 +349,9 @@ class SceneCommands:
         product's tolerances; the others are drawn from the mean and the standard deviation in the scene. With
         `[vary]` in the scene friction, stiffness, damping, mass, gain, ramp and the direction of gravity vary, too.
         With `[uncertain]` four times as many units more are simulated, and the answer covers the unknown values. A
-        slide runs the whole stroke unless `--opening` is given, a mechanism `run.duration` or to the end of its
-        stroke.
+        slide runs the whole stroke unless `opening` is given, a mechanism `run.duration` or to the end of its stroke.
 
-        For slides only: `--opening`.
+        For slides only: `opening`.
 
         Args:
             drive: Name of the drive, where a mechanism has several.
@@ -376,10 +373,10 @@ class SceneCommands:
                 distance it compares the unit with all gaps tighter, the unit with all gaps looser, and random
                 combinations of gaps.
             page: Writes a page with all results and pictures, and an animation of one unit of each verdict.
-            shard: Works on part I of N and writes it to `--out`; `slipfit merge` joins the parts. I is 1 to N. `auto`
+            shard: Works on part I of N and writes it to `out`; `slipfit merge` joins the parts. I is 1 to N. `auto`
                 takes the part of this task in a SLURM job array.
             out: Writes the results of the units to a file that `slipfit merge` reads.
-            resume: Continues where an interrupted run with the same `--out` stopped.
+            resume: Continues where an interrupted run with the same `out` stopped.
             threads: Number of threads; all cores if not given. The result does not depend on it.
             columns: Whether the result has a row for each unit, as of --csv.
             picture: Whether the result has pictures; if None, in notebooks.
@@ -476,10 +473,10 @@ class SceneCommands:
         For slides and mechanisms.
 
         Args:
-            output: File to write: .rs for slipfit-core, .h for the C library (slides only; `--crate` is for any
-                scene). Names in a header follow the file's: `slipfit_this_left` in left.h.
+            output: File to write: .rs for slipfit-core, .h for the C library (slides only; `crate` is for any scene).
+                Names in a header follow the file's: `slipfit_this_left` in left.h.
             crate: Writes a crate into this folder, with the folder's name, instead of a file; with functions and a
-                header for C. The folder is new or empty, or one that `--crate` has written, which is overwritten. The
+                header for C. The folder is new or empty, or one that `crate` has written, which is overwritten. The
                 step is compiled in that crate alone. So a line in the workspace's Cargo profile, which the crate's
                 Cargo.toml shows, keeps the step fast in a firmware image that is built for size.
             core: Folder of slipfit-core, on which the crate depends. If not given, the crate asks crates.io for it.
@@ -547,7 +544,7 @@ class SceneCommands:
         in % of its peak, against a far finer run. Explicit schemes are tried at finer steps, too, because they are
         stable only there. Of a mechanism the implicit schemes are tried, in double precision.
 
-        For slides only: `--stability`.
+        For slides only: `stability`.
 
         Args:
             drive: Name of the drive, where a mechanism has several.
@@ -585,7 +582,7 @@ def capability(
     """Tells performance and capability of measured parts by ISO 22514-2.
 
     Intervals are of 95 %. They are of the distribution that the parts choose, from 30 parts on, or of the one that
-    --family states.
+    `family` states.
 
     A CSV file has a row for each part. Its first row names the characteristics with their units, such as "length
     [mm]"; rows named nominal, lower and upper (or target, LSL and USL) state limits. A QIF 3.0 file of results (.qif)
@@ -595,13 +592,12 @@ def capability(
         file: Measured parts: CSV, or QIF results (.qif).
         group: Column of the CSV whose texts divide the parts into subgroups, such as a cavity or a machine.
         label: Column of the CSV that labels the parts; default: "part".
-        ignore: Leaves out a column of the CSV; may be repeated.
+        ignore: Leaves out a column of the CSV; or a list of them.
         family: Family of the distribution; default: chosen from the parts, of which that takes 30.
         page: Writes a page with pictures of every characteristic.
         progress: A function, or whether a line on standard error says how far it is.
 
     Raises:
-        SceneError: A mistake in the scene, with file, line, column and what is allowed.
         InputError: Another argument that is not allowed.
         WorkError: Valid input without a result, such as a full disk.
     """
@@ -621,12 +617,12 @@ def merge(
     picture: bool | None = None,
     progress: Progress = None,
 ) -> Result:
-    """Joins the parts that `tolerance --shard` or `population --shard` wrote.
+    """Joins the parts that `tolerance `shard` or `population `shard` wrote.
 
-    The result has the same bytes as that of one run without `--shard`.
+    The result has the same bytes as that of one run without `shard`.
 
     Args:
-        files: Files that `slipfit tolerance --shard` or `slipfit population --shard` wrote.
+        files: Files that `slipfit tolerance `shard` or `slipfit population `shard` wrote.
         out: Writes all parts as one file.
         n: Tolerance level at which a slide's clearances are shown; positive is tighter. The default is the level that
             closes the first pair of gaps, to a hundredth: 3.43 for the paper's slide.
@@ -636,7 +632,6 @@ def merge(
         progress: A function, or whether a line on standard error says how far it is.
 
     Raises:
-        SceneError: A mistake in the scene, with file, line, column and what is allowed.
         InputError: Another argument that is not allowed.
         WorkError: Valid input without a result, such as a full disk.
     """
