@@ -1,9 +1,9 @@
 //! An estimate with what is known of it: determined combinations, deviations, intervals, lack of fit.
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 use serde::Serialize;
 use slipfit_measured::numeric::tails::student_quantile_above;
+use slipfit_system::parallel;
 
 use crate::{
     beforehand::Beforehand,
@@ -171,7 +171,7 @@ pub fn estimate<M: Model + ?Sized>(model: &M, options: &Options) -> Result<Estim
             at_bound: parameter.is_at_bound(value),
         })
     };
-    let estimated = (0..parameters.len()).into_par_iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let estimated = parallel::each(parameters.len(), of).into_iter().collect::<Result<Vec<_>, _>>()?;
     let held_out = held_out_error(model, &fitted, &linearised, &beforehand);
     let covariance = posterior.unwrap_or(covariance);
     Ok(Estimate {

@@ -1,7 +1,7 @@
 //! What is fitted: parameters with bounds, and the output that a model computes for them.
 
-use rayon::prelude::*;
 use serde::Serialize;
+use slipfit_system::parallel;
 
 /// A parameter that is sought.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -56,7 +56,8 @@ pub trait Model: Sync {
     /// # Errors
     /// As [`simulate`](Self::simulate).
     fn sensitivities(&self, values: &[f64], output: &[f64]) -> Result<Vec<Vec<f64>>, ModelError> {
-        let column = |(i, parameter): (usize, &Parameter)| {
+        let column = |i: &usize| {
+            let (i, parameter) = (*i, &self.parameters()[*i]);
             let step = 1e-4 * parameter.scale(values[i]);
             // Away from the nearer bound.
             let step = if values[i] + step > parameter.bounds[1] { -step } else { step };
@@ -65,7 +66,7 @@ pub trait Model: Sync {
             let moved = self.simulate(&moved)?;
             Ok(moved.iter().zip(output).map(|(moved, output)| (moved - output) / step).collect())
         };
-        self.parameters().par_iter().enumerate().map(column).collect()
+        parallel::try_map(&Vec::from_iter(0..self.parameters().len()), column)
     }
 }
 

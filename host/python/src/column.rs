@@ -7,18 +7,18 @@ use std::{
 };
 
 use arrow_array::{
-    Array, ArrayRef, BooleanArray, DictionaryArray, Float64Array, Int32Array, StringArray, UInt64Array,
+    Array, ArrayRef, BooleanArray, DictionaryArray, Float64Array, Int32Array, Int64Array, StringArray,
     ffi::{FFI_ArrowArray, FFI_ArrowSchema, to_ffi},
     types::Int32Type,
 };
 use arrow_buffer::NullBuffer;
-use arrow_schema::Field;
+use arrow_schema::{DataType, Field};
 use pyo3::{
     IntoPyObjectExt,
     exceptions::{PyBufferError, PyIndexError, PyValueError},
     ffi,
     prelude::*,
-    types::{PyCapsule, PyList, PySlice},
+    types::{PyBool, PyBytes, PyCapsule, PyInt, PyList, PySlice, PyString},
 };
 use slipfit::show::columns::{self, Values, Words};
 
@@ -39,6 +39,11 @@ pub struct Column {
     shape: [isize; 2],
 }
 
+/// Kinds of values.
+const NUMBERS: &str = "numbers";
+const COUNTS: &str = "counts";
+const FLAGS: &str = "flags";
+const WORDS: &str = "words";
 /// Bytes of a number.
 const BYTES: usize = size_of::<f64>();
 
@@ -48,7 +53,8 @@ impl Column {
         let columns::Column { name, unit, values } = column;
         let array: ArrayRef = match values {
             Values::Numbers(numbers) => Arc::new(numbers_of(numbers)),
-            Values::Counts(numbers) => Arc::new(UInt64Array::from(numbers)),
+            // Signed, as differences of them are: no count of a file is beyond 2^63.
+            Values::Counts(numbers) => Arc::new(Int64Array::from_iter_values(numbers.into_iter().map(|n| n as i64))),
             Values::Flags(flags) => Arc::new(BooleanArray::from(flags)),
             Values::Words(Words { kinds, rows }) => {
                 let kinds = Arc::new(StringArray::from(kinds));
@@ -81,7 +87,7 @@ impl Column {
     fn numbers(&self) -> Option<(*const c_void, &'static CStr)> {
         let any = self.array.as_any();
         let float = any.downcast_ref().map(|array: &Float64Array| (array.values().as_ptr().cast(), c"d"));
-        float.or_else(|| any.downcast_ref().map(|array: &UInt64Array| (array.values().as_ptr().cast(), c"Q")))
+        float.or_else(|| any.downcast_ref().map(|array: &Int64Array| (array.values().as_ptr().cast(), c"q")))
     }
 
     fn value<'py>(&self, py: Python<'py>, row: usize) -> PyResult<Bound<'py, PyAny>> {
@@ -92,7 +98,7 @@ impl Column {
         if let Some(array) = any.downcast_ref::<Float64Array>() {
             return array.value(row).into_bound_py_any(py);
         }
-        if let Some(array) = any.downcast_ref::<UInt64Array>() {
+        if let Some(array) = any.downcast_ref::<Int64Array>() {
             return array.value(row).into_bound_py_any(py);
         }
         if let Some(array) = any.downcast_ref::<BooleanArray>() {
@@ -120,34 +126,63 @@ fn numbers_of(numbers: Vec<f64>) -> Float64Array {
     Float64Array::new(numbers.into(), nulls)
 }
 
-/// The kinds of values that a column is made from.
-#[derive(FromPyObject)]
-enum Given {
-    Flags(Vec<bool>),
-    Counts(Vec<u64>),
-    Numbers(Vec<Option<f64>>),
-    Words(Vec<Option<String>>),
+/// What `values` have to be for a column of this `kind`, or of the kind that they seem to have.
+fn values_of(values: &Bound<'_, PyAny>, kind: Option<&str>) -> PyResult<Values> {
+    let wrong = |_| {
+        PyValueError::new_err(
+            "a column has numbers, whole numbers, true and false, or words; allowed is a list of one kind",
+        )
+    };
+    let text = values.is_instance_of::<PyString>() || values.is_instance_of::<PyBytes>();
+    let list = if values.hasattr("tolist")? { values.call_method0("tolist")? } else { values.clone() };
+    let all: Vec<Bound<'_, PyAny>> = list.extract().map_err(wrong)?;
+    let flags = all.iter().filter(|one| one.is_instance_of::<PyBool>()).count();
+    let kind = match kind {
+        Some(kind) => kind,
+        None if all.is_empty() => NUMBERS,
+        None if flags == all.len() => FLAGS,
+        None if all.iter().any(|one| one.is_instance_of::<PyString>()) => WORDS,
+        None if all.iter().all(|one| one.is_instance_of::<PyInt>() && one.extract::<u64>().is_ok()) => COUNTS,
+        None => NUMBERS,
+    };
+    // Python counts true as 1.
+    if text || (flags > 0 && kind != FLAGS) {
+        return Err(wrong(PyValueError::new_err(())));
+    }
+    Ok(match kind {
+        FLAGS => Values::Flags(list.extract().map_err(wrong)?),
+        COUNTS => Values::Counts(list.extract().map_err(wrong)?),
+        WORDS => Values::Words(list.extract::<Vec<Option<String>>>().map_err(wrong)?.into_iter().collect()),
+        NUMBERS => {
+            let numbers: Vec<Option<f64>> = list.extract().map_err(wrong)?;
+            Values::Numbers(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
+        }
+        other => {
+            let message = format!("a column's kind is {other:?}, allowed is {NUMBERS}, {COUNTS}, {FLAGS} or {WORDS}");
+            return Err(PyValueError::new_err(message));
+        }
+    })
 }
 
 #[pymethods]
 impl Column {
-    /// Numbers, whole numbers, true and false, or words; None where there is none.
+    /// Numbers, whole numbers, true and false, or words; None where there is none. The values tell the `kind`, if it is not given.
     #[new]
-    #[pyo3(signature = (values, name = "", unit = ""))]
-    fn new(values: &Bound<'_, PyAny>, name: &str, unit: &str) -> PyResult<Self> {
-        let allowed = || {
-            PyValueError::new_err("a column has numbers, whole numbers, true and false, or words; allowed is one kind")
-        };
-        let values = match values.extract().map_err(|_| allowed())? {
-            Given::Flags(flags) if !flags.is_empty() => Values::Flags(flags),
-            Given::Flags(_) => Values::Numbers(Vec::new()),
-            Given::Counts(counts) => Values::Counts(counts),
-            Given::Numbers(numbers) => {
-                Values::Numbers(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
-            }
-            Given::Words(words) => Values::Words(words.into_iter().collect()),
-        };
+    #[pyo3(signature = (values, name = "", unit = "", kind = None))]
+    fn new(values: &Bound<'_, PyAny>, name: &str, unit: &str, kind: Option<&str>) -> PyResult<Self> {
+        let values = values_of(values, kind)?;
         Ok(Self::of(columns::Column { name: name.into(), unit: unit.into(), values }))
+    }
+
+    /// What it has: "numbers", "counts" (whole numbers from 0 on), "flags" (true and false) or "words".
+    #[getter]
+    fn kind(&self) -> &'static str {
+        match self.array.data_type() {
+            DataType::Float64 => NUMBERS,
+            DataType::Int64 => COUNTS,
+            DataType::Boolean => FLAGS,
+            _ => WORDS,
+        }
     }
 
     fn __len__(&self) -> usize {
@@ -184,7 +219,7 @@ impl Column {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let (py, own) = (slf.py(), slf.get());
-        (slf.get_type(), (own.tolist(py)?, &own.name, &own.unit)).into_bound_py_any(py)
+        (slf.get_type(), (own.tolist(py)?, &own.name, &own.unit, own.kind())).into_bound_py_any(py)
     }
 
     /// The Arrow PyCapsule interface: schema and array. Nothing is copied.
@@ -205,13 +240,18 @@ impl Column {
     /// # Safety
     /// Python passes a `view` to fill in.
     unsafe fn __getbuffer__(slf: Bound<'_, Self>, view: *mut ffi::Py_buffer, flags: c_int) -> PyResult<()> {
+        if view.is_null() {
+            return Err(PyBufferError::new_err("there is no view to fill in"));
+        }
+        // SAFETY: `view` is valid by the protocol, which asks for no object where an exception is raised.
+        unsafe { (*view).obj = std::ptr::null_mut() };
         let own = slf.get();
         let Some((start, kind)) = own.numbers() else {
             return Err(PyBufferError::new_err(
                 "a column of words, or of true and false, has no buffer: tolist() has them",
             ));
         };
-        if view.is_null() || flags & ffi::PyBUF_WRITABLE == ffi::PyBUF_WRITABLE {
+        if flags & ffi::PyBUF_WRITABLE == ffi::PyBUF_WRITABLE {
             return Err(PyBufferError::new_err("a column is read-only"));
         }
         let wanted = |flag: c_int| flags & flag == flag;

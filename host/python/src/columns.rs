@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use arrow_array::{RecordBatch, RecordBatchIterator, ffi_stream::FFI_ArrowArrayStream};
+use arrow_array::{RecordBatch, RecordBatchIterator, RecordBatchOptions, ffi_stream::FFI_ArrowArrayStream};
 use arrow_schema::{ArrowError, Schema};
 use pyo3::{
     IntoPyObjectExt,
-    exceptions::{PyKeyError, PyValueError},
+    exceptions::{PyKeyError, PyTypeError, PyValueError},
     prelude::*,
-    types::{PyCapsule, PyDict, PyIterator, PyList},
+    types::{PyCapsule, PyDict, PyIterator, PyList, PyTuple},
 };
 use slipfit::show::columns;
 
@@ -72,8 +72,25 @@ impl Columns {
         }
     }
 
-    fn __contains__(&self, name: &str) -> bool {
-        self.names().any(|own| own == name || bare(own) == name)
+    fn __contains__(&self, name: &Bound<'_, PyAny>) -> bool {
+        let name = name.extract::<&str>();
+        name.is_ok_and(|name| self.names().any(|own| own == name || bare(own) == name))
+    }
+
+    /// Refuses to be one array, of which numpy and pandas would make the names.
+    #[pyo3(signature = (*_arguments, **_keywords))]
+    fn __array__(&self, _arguments: &Bound<'_, PyTuple>, _keywords: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
+        Err(PyTypeError::new_err(
+            "columns are not one array: allowed are columns[name] for numpy, columns.to_pandas(), and libraries that take Arrow streams",
+        ))
+    }
+
+    /// A pandas.DataFrame of Arrow's types, which shares the memory. pandas and pyarrow have to be installed.
+    fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let types = PyDict::new(py);
+        types.set_item("types_mapper", py.import("pandas")?.getattr("ArrowDtype")?)?;
+        py.import("pyarrow")?.call_method1("table", (slf,))?.call_method("to_pandas", (), Some(&types))
     }
 
     fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
@@ -136,7 +153,8 @@ impl Columns {
         let schema = Arc::new(Schema::new(fields));
         let arrays = self.0.iter().map(|column| column.get().array()).collect();
         let failed = |error: ArrowError| PyValueError::new_err(error.to_string());
-        let batch = RecordBatch::try_new(schema.clone(), arrays).map_err(failed)?;
+        let options = RecordBatchOptions::new().with_row_count(Some(self.rows()));
+        let batch = RecordBatch::try_new_with_options(schema.clone(), arrays, &options).map_err(failed)?;
         let stream = FFI_ArrowArrayStream::new(Box::new(RecordBatchIterator::new([Ok(batch)], schema)));
         capsule(py, stream, c"arrow_array_stream")
     }

@@ -26,7 +26,7 @@ use slipfit::{
         self, Failure,
         call::{Answer, Call, Progress, Want},
     },
-    system::interrupt,
+    system::interrupt::Stop,
 };
 
 use self::{column::Column, columns::Columns};
@@ -56,27 +56,28 @@ fn raise(py: Python<'_>, failure: &Failure) -> PyErr {
     }
 }
 
-/// What a command returns: what it prints; warnings that are not in JSON; columns; draws.
-type Returned = (String, Vec<String>, Option<Columns>, Option<Columns>);
+/// What a command returns: what it prints; warnings that are not in JSON; columns; draws; names and texts of pictures.
+type Returned = (String, Vec<String>, Option<Columns>, Option<Columns>, Vec<(String, String)>);
 
 /// Runs a command, whose name and options are `arguments`.
 ///
 /// `scene` is the text of the scene, if it is not in a file. `columns` and `draws` say whether those of `--csv` and `--draws` are
-/// wanted. `progress` is called with what is done, how much of it, and of how much (None if that is not known); whatever it raises
-/// stops the command.
+/// wanted, `pictures` whether those of `--plot` and `--plots` are. `progress` is called with what is done, how much of it, and of how
+/// much (None if that is not known); whatever it raises stops this command.
 ///
-/// Other Python threads go on. Ctrl-C stops all commands that run in this process and raises KeyboardInterrupt.
+/// Other Python threads go on. Ctrl-C in the main thread stops the command that it waits for and raises KeyboardInterrupt.
 #[pyfunction]
-#[pyo3(signature = (arguments, scene = None, columns = false, draws = false, progress = None))]
+#[pyo3(signature = (arguments, scene = None, columns = false, draws = false, pictures = false, progress = None))]
 fn call(
     py: Python<'_>,
     arguments: Vec<OsString>,
     scene: Option<String>,
     columns: bool,
     draws: bool,
+    pictures: bool,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Returned> {
-    let wanted = [(Want::Columns, columns), (Want::Draws, draws)];
+    let wanted = [(Want::Columns, columns), (Want::Draws, draws), (Want::Pictures, pictures)];
     let wanted = wanted.into_iter().filter(|(_, wanted)| *wanted).map(|(want, _)| want).collect();
     let call = Call::new(arguments, scene, wanted);
     let (send, receive) = channel();
@@ -94,7 +95,7 @@ fn call(
         told = now;
         PyResult::Ok(())
     };
-    let result = wait(py, receive, || py.check_signals().and_then(|()| tell()));
+    let result = wait(py, receive, call.stop(), || py.check_signals().and_then(|()| tell()));
     // What has been done since it was last told.
     if let Ok(Some(Ok(_))) = &result {
         tell()?;
@@ -105,16 +106,21 @@ fn call(
         _ if panicked => Err(error(py, "WorkError", ("slipfit stopped by an internal error; see standard error",))),
         None => Err(error(py, "WorkError", ("slipfit stopped without a result",))),
         Some(Err(failure)) => Err(raise(py, &failure)),
-        Some(Ok(Answer { text, warnings, columns, draws })) => {
+        Some(Ok(Answer { text, warnings, columns, draws, pictures })) => {
             let of =
                 |columns: Option<slipfit::show::columns::Columns>| columns.map(|all| Columns::of(py, all)).transpose();
-            Ok((text, warnings, of(columns)?, of(draws)?))
+            Ok((text, warnings, of(columns)?, of(draws)?, pictures))
         }
     }
 }
 
 /// What a thread sends; `None` if it ends without. Meanwhile `look` is called again and again; where it fails, the work is stopped.
-fn wait<T: Send>(py: Python<'_>, receive: Receiver<T>, mut look: impl FnMut() -> PyResult<()>) -> PyResult<Option<T>> {
+fn wait<T: Send>(
+    py: Python<'_>,
+    receive: Receiver<T>,
+    stop: &Stop,
+    mut look: impl FnMut() -> PyResult<()>,
+) -> PyResult<Option<T>> {
     // A receiver alone cannot be shared with where Python's lock is released.
     let receive = Mutex::new(receive);
     let next = || receive.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK);
@@ -126,7 +132,7 @@ fn wait<T: Send>(py: Python<'_>, receive: Receiver<T>, mut look: impl FnMut() ->
             Err(RecvTimeoutError::Timeout) if stopped.is_none() => {
                 if let Err(raised) = look() {
                     stopped = Some(raised);
-                    interrupt::request();
+                    stop.request();
                 }
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -134,10 +140,7 @@ fn wait<T: Send>(py: Python<'_>, receive: Receiver<T>, mut look: impl FnMut() ->
     };
     match stopped {
         None => Ok(result),
-        Some(raised) => {
-            interrupt::clear();
-            Err(raised)
-        }
+        Some(raised) => Err(raised),
     }
 }
 

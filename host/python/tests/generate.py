@@ -12,15 +12,26 @@ from slipfit import _slipfit
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT.parent / "guide" / "src" / "json.md"
-#: Result classes of commands whose name is no noun.
+#: Result classes whose heading says less than a name has to, and those of commands whose name is no noun.
+NAMES = {
+    "beside": "ControllerComparison",
+    "closing": "ClosingLevel",
+    "controller of a mechanism": "MechanismController",
+    "given": "StatedGap",
+    "lack of fit": "LackOfFit",
+    "part of malfunction": "PartOfMalfunction",
+    "distribution of parts": "DistributionOfParts",
+    "mean of units": "MeanOfUnits",
+    "A shard of `tolerance` or `population`": "Shard",
+}
 CLASSES = {"simulate": "Simulation", "allocate": "Allocation", "identify": "Identification", "run": "Report"}
 PLAIN = {"number": "float", "count": "int", "text": "str", "bool": "bool", "any": "Any"}
 #: Columns beside the fields of JSON.
 COLUMNS = {
-    "simulate": ("columns", "the motion, a row every `every`, as of --csv"),
-    "sweep": ("columns", "figures of each level or value, as of --csv"),
-    "population": ("columns", "a row for each unit, as of --csv; if they were asked for"),
-    "tolerance": ("draws", "the measures of each unit, as of --draws; if they were asked for"),
+    "simulate": ("columns", "the motion, a row every `every`, as `csv` writes it"),
+    "sweep": ("columns", "figures of each level or value, as `csv` writes it"),
+    "population": ("columns", "a row for each unit, as `csv` writes it; if they were asked for"),
+    "tolerance": ("draws", "the measures of each unit; if they were asked for"),
 }
 #: What Scene has by hand, or as a function of another name.
 BY_HAND = {"identify", "import", "schema", "watch"}
@@ -47,6 +58,8 @@ def class_name(heading: str) -> str:
     command = heading.strip("`") if heading.startswith("`") else None
     if command is not None:
         return CLASSES.get(command, command.capitalize())
+    if heading in NAMES:
+        return NAMES[heading]
     return "".join(word.capitalize() for word in re.findall(r"[A-Za-z]+", heading) if word not in ("of", "the"))
 
 
@@ -84,8 +97,13 @@ def results() -> str:
         about.setdefault(name, f"What ``{command[1]}`` finds." if command else f"{heading[0].upper()}{heading[1:]}.")
         fields = {field: (type_of(kind), meaning) for field, kind, meaning in flat(all_tables, heading)}
         if command and (column := COLUMNS.get(command[1])):
-            fields = {field: one for field, one in fields.items() if field not in ("columns", "samples")}
+            if command[1] == "simulate":
+                # They are the columns.
+                fields = {field: one for field, one in fields.items() if field not in ("columns", "samples")}
             fields[column[0]] = ("Columns" if command[1] in ("simulate", "sweep") else "Columns | None", column[1])
+        # Warnings that the command line has on standard error alone are here, too.
+        if "json_version" in fields:
+            fields.setdefault("warnings", ("list[str]", "what to know before trusting the result"))
         classes.setdefault(name, []).append(fields)
     lines = [
         '"""Results of commands and what they are made of. Generated from the guide\'s page on JSON, which says more.',
@@ -100,6 +118,9 @@ def results() -> str:
         "from slipfit._result import Result",
         "from slipfit._slipfit import Columns",
     ]
+    # Not what are columns here, nor what is part of other tables alone.
+    named = {word for forms in classes.values() for form in forms for kind, _ in form.values() for word in re.findall(r"\w+", kind)}
+    classes = {name: forms for name, forms in classes.items() if name in named or "json_version" in forms[0]}
     for name, forms in classes.items():
         lines += ["", "", f"class {name}(Result):", f'    """{about[name]}"""']
         fields: dict[str, tuple[list[str], str]] = {}
@@ -111,7 +132,7 @@ def results() -> str:
             if any(field not in form for form in forms) and "None" not in kinds:
                 kinds.append("None")
             kinds.sort(key=lambda kind: kind == "None")
-            text = re.sub(r"\bnull\b", "None", meaning.replace("\\", "").replace("`", "``"))
+            text = keyword_of(re.sub(r"\bnull\b", "None", meaning.replace("\\", ""))).replace("`", "``")
             if re.search(r"\]\(", text):
                 text = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", text)
             lines += [*textwrap.wrap(f"    #: {text[0].upper()}{text[1:]}.", 118, subsequent_indent="    #: ")]
@@ -121,7 +142,6 @@ def results() -> str:
 
 def commands() -> str:
     """_commands.py."""
-    repeated = sorted({name for _, _, options in _slipfit.commands() for name, _, _, many, place in options if many and not place})
     lines = [
         '"""Commands as functions. Generated from the command line.',
         "",
@@ -138,12 +158,8 @@ def commands() -> str:
         "from typing import Any",
         "",
         "from slipfit import results",
-        "from slipfit._call import Files, Found, Option, Table, call, path_of",
+        "from slipfit._call import Files, Option, Table, call, path_of",
         "from slipfit._progress import Progress",
-        "from slipfit._result import Result",
-        "",
-        "#: Options that may be repeated.",
-        f"REPEATED = frozenset({{{', '.join(map(repr_of, repeated))}}})",
     ]
     of_scene, others = [], []
     for name, about, options in _slipfit.commands():
@@ -154,15 +170,11 @@ def commands() -> str:
     lines += ["", "", "class SceneCommands:", '    """The commands that work on a scene."""', ""]
     lines += [
         "    def _call(",
-        "        self, kind: type[Found], command: str, options: Mapping[str, Option], others: Sequence[Table] = (), **wanted: Any",
-        "    ) -> Found:",
+        "        self, kind: Any, command: str, options: Mapping[str, Option], others: Sequence[Table] = (), **wanted: Any",
+        "    ) -> Any:",
         "        raise NotImplementedError",
     ]
     return "\n".join([*lines, *sum(of_scene, []), *sum(others, [])]) + "\n"
-
-
-def repr_of(text: str) -> str:
-    return f'"{text}"'
 
 
 def function(name: str, about: str, options, of_scene: bool) -> list[str]:
@@ -172,7 +184,9 @@ def function(name: str, about: str, options, of_scene: bool) -> list[str]:
     places = [one for one in arguments if one[4]]
     keywords = [one for one in arguments if not one[4]]
     kind = CLASSES.get(name, name.capitalize())
-    result = "Result" if name == "merge" else f"results.{kind}"
+    result = "results.Population | results.Tolerance" if name == "merge" else f"results.{kind}"
+    # Type checkers are not asked which of them it is: the other fields are an AttributeError.
+    kinds = f"{result} | results.Shard" if "shard" in [option for option, *_ in keywords] else result
     column = COLUMNS.get(name)
     has_picture = any(option in ("plot", "plots") for option, *_ in keywords)
     asked = column is not None and name not in ("simulate", "sweep")
@@ -196,15 +210,15 @@ def function(name: str, about: str, options, of_scene: bool) -> list[str]:
     inner = indent + "    "
     lines.append(f"{inner}options: dict[str, Option] = {{{passed}}}")
     if of_scene:
-        lines.append(f'{inner}return self._call({result}, "{name}", options, {", ".join(wanted)})')
+        lines.append(f'{inner}found: {result} = self._call({kinds}, "{name}", options, {", ".join(wanted)})')
     elif places and places[0][3]:
         lines.append(f"{inner}paths = [path_of(path) for path in {python_name(places[0][0])}]")
-        lines.append(f'{inner}return call({result}, "{name}", paths, options, {", ".join(wanted)})')
+        lines.append(f'{inner}found: {result} = call({result}, "{name}", paths, options, {", ".join(wanted)})')
     else:
         lines.append(f"{inner}with Files() as files:")
         lines.append(f"{inner}    path = files.of({python_name(places[0][0])})")
-        lines.append(f'{inner}    return call({result}, "{name}", [path], options, repeated=REPEATED, {", ".join(wanted)})')
-    return lines
+        lines.append(f'{inner}    found: {result} = call({result}, "{name}", [path], options, {", ".join(wanted)})')
+    return [*lines, f"{inner}return found"]
 
 
 def is_column(column, asked: bool, option: str) -> bool:

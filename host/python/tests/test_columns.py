@@ -27,7 +27,7 @@ def address(array):
 @pytest.mark.parametrize("name", NUMBERS)
 def test_all_libraries_see_the_same_memory(columns, name):
     own = np.asarray(columns[name])
-    assert own.shape == (300,) and not own.flags.writeable and own.dtype == (np.uint64 if name == "unit" else np.float64)
+    assert own.shape == (300,) and not own.flags.writeable and own.dtype == (np.int64 if name == "unit" else np.float64)
     table = pyarrow.table(columns)
     frame = table.to_pandas(types_mapper=pandas.ArrowDtype)
     series = polars.DataFrame(columns)[name]
@@ -94,5 +94,45 @@ def test_copies_are_equal(columns):
     assert columns != slipfit.Columns([columns["unit"]])
     with pytest.raises(ValueError, match="equally long"):
         slipfit.Columns([slipfit.Column([1.0]), slipfit.Column([1.0, 2.0])])
-    with pytest.raises(ValueError, match="one kind"):
-        slipfit.Column([1.0, "a"])
+
+
+def test_kinds_of_columns():
+    kinds = {"numbers": [1.5, None], "counts": [1, 2], "flags": [True, False], "words": ["a", None]}
+    for kind, values in kinds.items():
+        column = slipfit.Column(values, kind=kind)
+        assert column.kind == slipfit.Column(values).kind == kind and column.tolist() == values
+        empty = slipfit.Column([], kind=kind)
+        assert pickle.loads(pickle.dumps(empty)).kind == kind and pickle.loads(pickle.dumps(column)) == column
+    assert slipfit.Column(np.array([1, 2])).kind == "counts" and slipfit.Column([]).kind == slipfit.Column([1, -2]).kind == "numbers"
+    for values in ([1.0, "a"], [True, 2], [True, 1.5], "words", b"12", 3, [[1.0]], [1, "a"]):
+        with pytest.raises(ValueError, match="one kind"):
+            slipfit.Column(values)
+    for values, kind in (([1.5], "counts"), ([-1], "counts"), ([True], "counts"), (["a"], "numbers"), ([1.0], "flags"), ([1.0], "colours")):
+        with pytest.raises(ValueError, match="allowed is"):
+            slipfit.Column(values, kind=kind)
+
+
+def test_counts_are_signed(columns):
+    difference = np.diff(np.asarray(columns["unit"])[::-1])
+    assert (difference == -1).all()
+
+
+def test_columns_without_a_column():
+    none = slipfit.Columns([])
+    assert none.rows == 0 and len(none) == 0 and pyarrow.table(none).num_columns == 0 and pickle.loads(pickle.dumps(none)) == none
+
+
+def test_pandas(columns):
+    frame = columns.to_pandas()
+    assert list(frame.columns) == list(columns) and frame["tightness"].tolist() == columns["tightness"].tolist()
+    assert frame["tightness"].array.__arrow_array__().chunk(0).buffers()[1].address == address(np.asarray(columns["tightness"]))
+    # The names alone would be no data frame of the columns.
+    for wrong in (pandas.DataFrame, np.asarray):
+        with pytest.raises(TypeError, match="to_pandas"):
+            wrong(columns)
+
+
+def test_whatever_is_asked_for(columns):
+    assert 3 not in columns and None not in columns and "tightness" in columns
+    with pytest.raises(TypeError):
+        columns[3]

@@ -21,7 +21,7 @@ def closed():
     return file
 
 
-VALUES = [math.nan, math.inf, "a", b"a", object(), [1.0, 2.0], [math.nan] * 16, {}, "1;2", "\0", (None,), 1j, closed(), np.zeros((2, 2))]
+VALUES = [[1, 2], {1: 2}, math.nan, math.inf, "a", b"a", object(), [1.0, 2.0], [math.nan] * 16, {}, "1;2", "\0", (None,), 1j, closed(), np.zeros((2, 2))]
 CALLS = {
     "n": lambda value: slipfit.Scene(SLIDE).simulate(n=value),
     "units": lambda value: slipfit.Scene(SLIDE).population(units=value),
@@ -66,6 +66,14 @@ OTHERS = {
     "columns without time": lambda: slipfit.Scene.from_text('[identify]\nmodel = "drive-train"\n').identify({"force (N)": [1.0]}),
     "columns where none are": lambda: slipfit.Scene(SLIDE, {"slide.mass": {"a": [1.0]}}).check(),
     "an output that is a folder": lambda: slipfit.Scene(SLIDE).table(output="/"),
+    "a NUL in a scene's name": lambda: slipfit.Scene("a\0b").text,
+    "half a character": lambda: slipfit.Scene.from_text("title = '\udc80'").check(),
+    "overrides that are a list": lambda: slipfit.Scene(SLIDE, [("slide.mass", 1.0)]),
+    "further overrides that are a text": lambda: slipfit.Scene(SLIDE).with_overrides("slide.mass=1"),
+    "a result as parts": lambda: slipfit.capability(slipfit.Scene(SLIDE).check()),
+    "names of several levels": lambda: slipfit.capability(pandas.DataFrame({("a", "b"): [1.0]})),
+    "columns that differ in length": lambda: slipfit.capability({"a": [1.0], "b": [1.0, 2.0]}),
+    "plot without columns": lambda: slipfit.Scene(SLIDE).check().plot(),
     "an ending": lambda: slipfit.Scene(SLIDE).kernel(output="kernel.png"),
     "0 threads": lambda: slipfit.Scene(SLIDE).population(threads=0),
     "1.5 units": lambda: slipfit.Scene(SLIDE).population(units=1.5),
@@ -142,6 +150,24 @@ def test_bad_calls_from_many_threads():
     assert len(caught) == 160
 
 
+def test_an_exception_stops_one_command_and_no_other():
+    class Enough(Exception):
+        pass
+
+    found = []
+    thread = threading.Thread(target=lambda: found.append(slipfit.Scene("cd-rom-slide-drawing").population(units=4000)))
+    thread.start()
+    stopped = 0
+    while thread.is_alive():
+        def tell(what, done, of):
+            raise Enough
+
+        with pytest.raises(Enough):
+            slipfit.Scene("cd-rom-slide-drawing").population(units=1_000_000, progress=tell)
+        stopped += 1
+    assert stopped >= 2 and found[0].statistics.units == 4000
+
+
 def in_a_process(queue):
     try:
         slipfit.Scene(SLIDE, {"slide.mass": -1.0}).check()
@@ -169,6 +195,11 @@ def test_messages_speak_of_keywords_and_columns():
     with pytest.raises(slipfit.InputError) as caught:
         slipfit.capability({"width": [1.0] * 20 + ["wide"]})
     assert "columns-1.csv" in str(caught.value) and "tmp" not in str(caught.value) and "--" not in str(caught.value)
+    with pytest.raises(slipfit.InputError, match="^a--n.csv: "):
+        slipfit.capability("a--n.csv")
+    with pytest.raises(slipfit.InputError, match="invalid float") as caught:
+        slipfit.Scene(SLIDE).check(n="x")
+    assert str(caught.value).startswith("invalid value 'x' for 'n <") and "For more" not in str(caught.value)
     with pytest.raises(slipfit.SceneError) as caught:
         slipfit.Scene("clutch", {"measured": {"file": {"a": [1.0]}, "column": [{"of": "b"}]}}).check()
     assert all("/" not in problem.message for problem in caught.value.problems) and "/" not in str(caught.value)

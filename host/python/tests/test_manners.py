@@ -1,6 +1,7 @@
 """Types, copies, threads, Ctrl-C, progress, memory, pictures."""
 
 import copy
+import decimal
 import io
 import json
 import pickle
@@ -13,6 +14,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas
+import polars
+import pyarrow
 import pytest
 from conftest import command_line
 
@@ -46,6 +49,8 @@ def test_results_can_be_compared_pickled_and_copied():
         assert again == result and type(again) is type(result) and again.columns == result.columns
         assert again.verdict == result.verdict
     assert result != slipfit.Scene(SLIDE).simulate(n=1.0)
+    with pytest.raises(AttributeError, match="cannot be changed"):
+        result.verdict = "runs"
 
 
 def test_overrides_have_units_and_lists():
@@ -73,7 +78,7 @@ is = "a + b"
 """
 
 
-@pytest.mark.parametrize("kind", [dict, pandas.DataFrame])
+@pytest.mark.parametrize("kind", [dict, pandas.DataFrame, pyarrow.table, polars.DataFrame])
 def test_measured_parts_as_arrays(kind, here):
     """Own samples take the place of a dimension's distribution: mean and standard deviation of the sum are those of numpy."""
     sample = np.random.default_rng(2).gamma(4.0, 0.01, 5000) + 9.96
@@ -159,6 +164,14 @@ def test_plots_with_matplotlib():
     result = slipfit.Scene(SLIDE).simulate(n=2.5)
     assert [axis.get_ylabel() for axis in result.plot("force", "vz").axes] == ["force (N)", "vz (m/s)"]
     assert len(result.plot().axes) == 5
+    units = slipfit.Scene(DRAWING).population(units=64, columns=True)
+    assert {axis.get_ylabel() for axis in units.plot().axes} == {"units"}
+    assert len(slipfit.Scene("clutch").tolerance(samples=500, draws=True).plot().axes) == 1
+    over = ["friction.coefficient=0.2:0.3:0.1", "slide.mass=80:100:10"]
+    axis = slipfit.Scene(SLIDE).sweep(over=over).plot("peak_force_N").axes[0]
+    assert [len(line.get_xdata()) for line in axis.get_lines()] == [2, 2, 2]
+    with pytest.raises(slipfit.InputError, match="no columns to draw"):
+        slipfit.Scene("clutch").tolerance(samples=500).plot()
 
 
 def test_exit_codes_of_the_command_line():
@@ -209,6 +222,23 @@ def test_a_data_frame_has_its_index_and_other_columns():
     frame["good"] = True
     expected = slipfit.capability(frame, label="part", ignore=["good"])
     assert slipfit.capability(frame.set_index("part"), label="part", ignore=["good"]) == expected
+
+
+def test_cells_of_data_frames():
+    """Numbers of numpy and decimals, what is missing, times in nanoseconds, and names that are numbers."""
+    width = np.random.default_rng(1).normal(10.0, 0.01, 30).round(4)
+    expected = slipfit.capability({"width (mm)": width})
+    of_numpy = slipfit.capability({"width (mm)": list(width)})
+    decimals = slipfit.capability({"width (mm)": [decimal.Decimal(repr(float(one))) for one in width]})
+    assert of_numpy == decimals == expected
+    missing = pandas.DataFrame({"width (mm)": pandas.array([*width, pandas.NA], dtype="Float64"), "height (mm)": np.arange(31.0)})
+    first = slipfit.capability(missing).characteristics[0]
+    assert (first.count, first.missing) == (30, 1)
+    of_numpy = np.arange(30).astype("datetime64[D]").astype("datetime64[ns]")
+    for times in (of_numpy, pandas.Series(of_numpy), of_numpy.astype("datetime64[s]").tolist()):
+        labelled = slipfit.capability({"time": times, "width (mm)": width}, label="time").characteristics[0]
+        assert labelled.outliers[0].label == f"1970-01-{labelled.outliers[0].part + 1}T00:00:00"
+    assert slipfit.capability(pandas.DataFrame({3: width})).characteristics[0].name.startswith("3")
 
 
 def test_a_field_whose_name_is_a_keyword():

@@ -8,27 +8,33 @@ use std::{
 };
 
 use indicatif::ProgressBar;
-use slipfit_system::files;
+use slipfit_system::{
+    files,
+    interrupt::{self, Stop},
+};
 
 use super::failure::Failure;
-use crate::show::columns::Columns;
+use crate::show::{columns::Columns, plot::PlotError};
 
 /// A command that another program calls.
 pub struct Call {
     arguments: Vec<OsString>,
     scene: Option<String>,
     wanted: Vec<Want>,
+    stop: Stop,
     answer: Mutex<Answer>,
     bar: Mutex<Option<ProgressBar>>,
 }
 
-/// Columns that commands have.
+/// What commands have beside what they print.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Want {
-    /// Those of the option `--csv`.
+    /// The columns of the option `--csv`.
     Columns,
-    /// Those of the option `--draws`.
+    /// The columns of the option `--draws`.
     Draws,
+    /// The pictures of the options `--plot` and `--plots`.
+    Pictures,
 }
 
 /// What a command returns.
@@ -42,6 +48,8 @@ pub struct Answer {
     pub columns: Option<Columns>,
     /// The columns of `--draws`, likewise.
     pub draws: Option<Columns>,
+    /// Names and texts (SVG) of the pictures, if they are wanted. Commands that draw nothing, or not of such a scene, have none.
+    pub pictures: Vec<(String, String)>,
 }
 
 /// How far a command is.
@@ -64,9 +72,10 @@ impl Call {
     /// Of `arguments`, which follow the program's name on the command line.
     ///
     /// `scene` is the text of the scene, if there need not be a file: then the file that the arguments name is not read. `wanted` are
-    /// the columns that are wanted.
+    /// what is wanted beside it.
     pub fn new(arguments: Vec<OsString>, scene: Option<String>, wanted: Vec<Want>) -> Arc<Self> {
-        Arc::new(Self { arguments, scene, wanted, answer: Mutex::default(), bar: Mutex::default() })
+        let (stop, answer, bar) = Default::default();
+        Arc::new(Self { arguments, scene, wanted, stop, answer, bar })
     }
 
     /// How far it is; `None` before its work begins.
@@ -75,18 +84,20 @@ impl Call {
         bar.as_ref().map(|bar| Progress { what: bar.message(), done: bar.position(), of: bar.length() })
     }
 
-    /// Whether these columns are wanted.
+    /// What stops it, and no other.
+    pub fn stop(&self) -> &Stop {
+        &self.stop
+    }
+
+    /// Whether this is wanted.
     pub fn wants(&self, want: Want) -> bool {
         self.wanted.contains(&want)
     }
 
-    /// Takes `columns`: the first, or more rows of them.
+    /// Takes `columns`, those of `--draws` or of `--csv`: the first, or more rows of them.
     pub fn give(&self, want: Want, columns: Columns) {
         let mut answer = self.answer();
-        let all = match want {
-            Want::Columns => &mut answer.columns,
-            Want::Draws => &mut answer.draws,
-        };
+        let all = if want == Want::Draws { &mut answer.draws } else { &mut answer.columns };
         match all {
             Some(all) => all.append(&columns),
             None => *all = Some(columns),
@@ -132,8 +143,9 @@ pub fn within<T>(call: Option<Arc<Call>>, work: impl FnOnce() -> T) -> T {
             CURRENT.set(self.0.take());
         }
     }
+    let stop = call.as_ref().map(|call| call.stop.clone());
     let _restore = Restore(CURRENT.replace(call));
-    work()
+    interrupt::within(stop, work)
 }
 
 /// The text of the scene that the current call passes.
@@ -160,6 +172,39 @@ pub fn columns(
     }
     if let Some(call) = call {
         call.give(want, columns);
+    }
+    Ok(())
+}
+
+/// Whether the current call wants pictures.
+pub fn wants_pictures() -> bool {
+    current().is_some_and(|call| call.wants(Want::Pictures))
+}
+
+/// Writes what `draw` draws (SVG) to `path`, if there is one, and gives it to the current call under this `name`, if it wants pictures.
+///
+/// # Errors
+/// If there is a path: a picture without anything to draw, and a file that cannot be written.
+pub fn picture(
+    path: Option<&Path>,
+    name: &str,
+    draw: impl FnOnce() -> Result<String, PlotError>,
+) -> Result<(), Failure> {
+    let call = current().filter(|call| call.wants(Want::Pictures));
+    if path.is_none() && call.is_none() {
+        return Ok(());
+    }
+    let svg = match draw() {
+        Ok(svg) => svg,
+        // Nobody asked for a file that would be missing.
+        Err(_) if path.is_none() => return Ok(()),
+        Err(error) => return Err(anyhow::Error::from(error).into()),
+    };
+    if let Some(path) = path {
+        files::write(path, svg.as_bytes())?;
+    }
+    if let Some(call) = call {
+        call.answer().pictures.push((name.to_owned(), svg));
     }
     Ok(())
 }

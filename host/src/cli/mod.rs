@@ -142,7 +142,7 @@ pub fn answer(call: &Arc<Call>) -> Result<Answer, Failure> {
     let arguments = std::iter::once("slipfit".into()).chain(call.arguments().iter().cloned());
     let cli = Cli::try_parse_from(arguments).map_err(|wrong| {
         let text = wrong.render().to_string();
-        let text = text.split("\n\nUsage:").next().unwrap_or_default();
+        let text = text.split("\n\nUsage:").flat_map(|part| part.split("\n\nFor more")).next().unwrap_or_default();
         Failure::Input(text.trim().trim_start_matches("error: ").to_owned())
     })?;
     if let Some(Command::Watch(_)) = cli.command {

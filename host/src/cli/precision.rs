@@ -10,6 +10,7 @@ use slipfit_tolerance::number::{level, or_dash, three_digits};
 
 use super::{
     arguments::{DriveArguments, Moving, SceneArguments},
+    call,
     failure::Failure,
     stability::MapArguments,
     terminal::{given, print, print_json, progress, text_table},
@@ -91,10 +92,7 @@ impl Arguments {
         if let Some(path) = &self.csv {
             files::write(path, &precision_csv(&points)?)?;
         }
-        if let Some(path) = &self.plot {
-            let svg = work_precision(&title, self.n, &problems, &points).map_err(anyhow::Error::from)?;
-            files::write(path, svg.as_bytes())?;
-        }
+        call::picture(self.plot.as_deref(), "precision", || work_precision(&title, self.n, &problems, &points))?;
         if self.scene.json {
             let floor = |(problem, truth): &(Problem, Truth)| Floor { problem: problem.name, percent: truth.floor };
             let floors = problems.iter().map(floor).collect();

@@ -259,10 +259,7 @@ impl Arguments {
         let of_controller = if by_controller { Some(&mut run) } else { controller.as_mut().and_then(Option::as_mut) };
         of_controller.map(tried).transpose()?;
         call::columns(Want::Columns, self.csv.as_deref(), || Ok(export::of_trajectory(&run.trajectory)))?;
-        if let Some(path) = &self.plot {
-            let svg = unit_over_time(&run.trajectory, &scene.title, shown).map_err(anyhow::Error::from)?;
-            files::write(path, svg.as_bytes())?;
-        }
+        call::picture(self.plot.as_deref(), "motion", || unit_over_time(&run.trajectory, &scene.title, shown))?;
         let mut warnings = check::warnings_of(&scene);
         warnings.extend(product.into_iter().flat_map(|product| product.warnings));
         warnings.extend(run.trust.warning());

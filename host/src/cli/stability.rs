@@ -8,6 +8,7 @@ use slipfit_system::files;
 
 use super::{
     arguments::ThreadArguments,
+    call,
     failure::Failure,
     terminal::{print, print_json, progress, text_table},
 };
@@ -58,9 +59,7 @@ impl MapArguments {
         if let Some(path) = csv {
             files::write(path, &stability_csv(single.iter().chain(&random))?)?;
         }
-        if let Some(path) = plot {
-            files::write(path, stability_map(&single, &random, &scene.title).as_bytes())?;
-        }
+        call::picture(plot, "stability", || Ok(stability_map(&single, &random, &scene.title)))?;
         if json {
             let factors = FACTORS.map(|factor| factor.name).into();
             print_json(&Report { seed: self.seed, one_at_a_time: single, factors, random })

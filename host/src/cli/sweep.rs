@@ -7,7 +7,6 @@ use std::{collections::BTreeMap, fmt::Write, path::PathBuf};
 use clap::Args;
 use serde::Serialize;
 use slipfit_core::slide::CONTACTS;
-use slipfit_system::files;
 use slipfit_tolerance::number::{fixed, level, or_dash};
 
 use super::{
@@ -154,9 +153,7 @@ impl Arguments {
             worst.doubts = worst.trust.warning().into_iter().collect();
         }
         call::columns(Want::Columns, self.csv.as_deref(), || Ok(of_sweep(&swept)))?;
-        if let Some(path) = &self.plot {
-            files::write(path, verdicts(&swept, subject.title()).map_err(anyhow::Error::from)?.as_bytes())?;
-        }
+        call::picture(self.plot.as_deref(), "levels", || verdicts(&swept, subject.title()))?;
         let mut warnings = of.warnings()?;
         warnings.extend(product.into_iter().flat_map(|product| product.warnings));
         warnings.extend(doubts(&swept));

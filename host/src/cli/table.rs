@@ -9,11 +9,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use slipfit_system::files;
 
 use super::{
     arguments::{DriveArguments, Moving, SceneArguments, ThreadArguments},
-    check,
+    call, check,
     failure::Failure,
     mechanism,
     sweep::{LevelArguments, doubts},
@@ -202,10 +201,7 @@ impl Arguments {
         warnings.extend(doubt);
         warnings.extend(coarse(driven, &table));
         file::write(&self.output, &extension, &table.bytes)?;
-        if let Some(path) = &self.plot {
-            let svg = picture(kind, &table, driven.title()).map_err(anyhow::Error::from)?;
-            files::write(path, svg.as_bytes())?;
-        }
+        call::picture(self.plot.as_deref(), "table", || picture(kind, &table, driven.title()))?;
         if self.scene.json {
             let [force, velocity] = table.worst_error;
             let [force_in_use, velocity_in_use] = table.worst_error_in_use;

@@ -81,7 +81,7 @@ fn figure_names(kind: DriveKind) -> [(&'static str, &'static str); 9] {
     ]
 }
 
-/// The figures of `outcomes` as columns of the [`figure_names`].
+/// The figures of `outcomes` as columns.
 pub fn of_figures<'a>(kind: DriveKind, outcomes: impl Iterator<Item = &'a Outcome> + Clone) -> Vec<Column> {
     let values: [fn(&Outcome) -> Option<f64>; 9] = [
         |outcome| outcome.breakaway,

@@ -9,6 +9,8 @@ use std::sync::{
 
 use rayon::prelude::*;
 
+use crate::interrupt;
+
 /// What `of` makes of each number below `count`, in order. What it makes does not depend on the number of threads.
 pub fn each<T: Send>(count: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let made: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
@@ -46,9 +48,10 @@ pub fn try_map<'a, I: Sync, T: Send, E: Send>(
     made.into_iter().flatten().collect()
 }
 
-/// Does `part` for each number below `count`, a part at a time on each thread.
+/// Does `part` for each number below `count`, a part at a time on each thread. What stops this thread stops all.
 fn spread(count: usize, part: &(dyn Fn(usize) + Sync)) {
-    (0..count).into_par_iter().with_max_len(1).for_each(part);
+    let stop = interrupt::current();
+    (0..count).into_par_iter().with_max_len(1).for_each(|i| interrupt::within(stop.clone(), || part(i)));
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Everything that is found of a model: by formula, and by the units of a study.
 
-use rayon::prelude::*;
 use slipfit_core::sampling::stream::derived;
+use slipfit_system::parallel;
 
 use super::{
     counting::{
@@ -216,14 +216,12 @@ fn rare(model: &Model, draw: &Draw, seed: u64, counted: Option<&Joint>) -> Resul
         let hits = counted.map(|joint| (joint.closed_counts.0[i], joint.closed_counts.1));
         Some((Failure { measures: sum.measures.clone(), limit: 0.0, above: false }, hits))
     });
-    let failures: Vec<_> = sides.chain(sums).enumerate().collect();
-    let of = |(number, failure): (usize, Option<(Failure, Option<Hits>)>)| {
+    let failures: Vec<(usize, Option<(Failure, Option<Hits>)>)> = sides.chain(sums).enumerate().collect();
+    parallel::try_map(&failures, |(number, failure)| {
         stop_if_asked()?;
         let Some((failure, hits)) = failure else { return Ok(None) };
-        Ok(probability(model, draw, &failure, derived(seed, TAILS + number as u64), hits))
-    };
-    // One by one: the few that are asked for stand together.
-    failures.into_par_iter().with_max_len(1).map(of).collect()
+        Ok(probability(model, draw, failure, derived(seed, TAILS + *number as u64), *hits))
+    })
 }
 
 fn stop_if_asked() -> Result<(), StudyError> {

@@ -1,6 +1,6 @@
 //! The best point of a grid that is refined about its best point: for models whose output jumps with their parameters.
 
-use rayon::prelude::*;
+use slipfit_system::parallel;
 
 use super::{
     least_squares::Cost,
@@ -33,13 +33,10 @@ pub fn search<M: Model + ?Sized>(model: &M, loss: Loss) -> Option<Vec<f64>> {
             ranges.iter().map(along).collect()
         };
         // In the order of the points, whatever the number of threads.
-        let residuals: Vec<Option<Vec<f64>>> = (0..count)
-            .into_par_iter()
-            .map(|k| {
-                let output = model.simulate(&point(k)).ok()?;
-                Some(model.measured().iter().zip(&output).map(|(measured, output)| measured - output).collect())
-            })
-            .collect();
+        let residuals: Vec<Option<Vec<f64>>> = parallel::each(count, |k| {
+            let output = model.simulate(&point(k)).ok()?;
+            Some(model.measured().iter().zip(&output).map(|(measured, output)| measured - output).collect())
+        });
         // One scale for all points of all grids: that of the best by absolute values.
         let (scale, beforehand) = match &reference {
             Some(reference) => reference,

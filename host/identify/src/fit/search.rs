@@ -1,7 +1,7 @@
 //! From several starts to one estimate.
 
-use rayon::prelude::*;
 use slipfit_core::sampling::stream::{Rng, uniform, unit_stream};
+use slipfit_system::parallel;
 use slipfit_tolerance::numeric::normal::quantile;
 
 use super::{
@@ -179,7 +179,7 @@ fn promising<M: Model + ?Sized>(model: &M, stated: &[f64], starts: usize) -> Vec
         let Ok(output) = model.simulate(values) else { return f64::INFINITY };
         model.measured().iter().zip(&output).map(|(measured, output)| (measured - output).abs()).sum()
     };
-    let costs: Vec<f64> = all.par_iter().map(cost).collect();
+    let costs: Vec<f64> = parallel::map(&all, cost);
     let mut order: Vec<usize> = (0..all.len()).filter(|k| costs[*k].is_finite()).collect();
     if order.is_empty() {
         return vec![stated.to_vec()];

@@ -13,20 +13,16 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from slipfit import results
-from slipfit._call import Files, Found, Option, Table, call, path_of
+from slipfit._call import Files, Option, Table, call, path_of
 from slipfit._progress import Progress
-from slipfit._result import Result
-
-#: Options that may be repeated.
-REPEATED = frozenset({"ignore", "n", "over", "set"})
 
 
 class SceneCommands:
     """The commands that work on a scene."""
 
     def _call(
-        self, kind: type[Found], command: str, options: Mapping[str, Option], others: Sequence[Table] = (), **wanted: Any
-    ) -> Found:
+        self, kind: Any, command: str, options: Mapping[str, Option], others: Sequence[Table] = (), **wanted: Any
+    ) -> Any:
         raise NotImplementedError
 
     def run(
@@ -64,7 +60,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"out": out, "drive": drive, "n": n, "units": units, "threads": threads}
-        return self._call(results.Report, "run", options, progress=progress)
+        found: results.Report = self._call(results.Report, "run", options, progress=progress)
+        return found
 
     def check(
         self,
@@ -91,7 +88,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"n": n, "plot": plot}
-        return self._call(results.Check, "check", options, picture=picture, progress=progress)
+        found: results.Check = self._call(results.Check, "check", options, picture=picture, progress=progress)
+        return found
 
     def tolerance(
         self,
@@ -132,7 +130,7 @@ class SceneCommands:
                 that closes the first pair of gaps, to a hundredth: 3.43 for the paper's slide.
             csv: Writes the measures' statistics as CSV.
             plots: Draws histograms, contributors and correlations as SVG files in a folder.
-            draws: Whether the result has the measures of each unit, as of --draws.
+            draws: Whether the result has the measures of each unit.
             picture: Whether the result has pictures; if None, in notebooks.
             progress: A function, or whether a line on standard error says how far it is.
 
@@ -142,7 +140,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"samples": samples, "method": method, "replicates": replicates, "seed": seed, "threads": threads, "shard": shard, "out": out, "resume": resume, "n": n, "csv": csv, "plots": plots}
-        return self._call(results.Tolerance, "tolerance", options, draws=draws, picture=picture, progress=progress)
+        found: results.Tolerance = self._call(results.Tolerance | results.Shard, "tolerance", options, draws=draws, picture=picture, progress=progress)
+        return found
 
     def allocate(
         self,
@@ -192,7 +191,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"require": require, "force_limit": force_limit, "units": units, "samples": samples, "seed": seed, "threads": threads, "write": write, "csv": csv, "plot": plot}
-        return self._call(results.Allocation, "allocate", options, picture=picture, progress=progress)
+        found: results.Allocation = self._call(results.Allocation, "allocate", options, picture=picture, progress=progress)
+        return found
 
     def simulate(
         self,
@@ -260,7 +260,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"n": n, "unit": unit, "seed": seed, "correlation": correlation, "csv": csv, "plot": plot, "page": page, "every": every, "audit": audit, "stroke": stroke, "error": error, "step": step, "integrator": integrator, "scalar": scalar}
-        return self._call(results.Simulation, "simulate", options, columns=True, picture=picture, progress=progress)
+        found: results.Simulation = self._call(results.Simulation, "simulate", options, columns=True, picture=picture, progress=progress)
+        return found
 
     def sweep(
         self,
@@ -319,7 +320,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"drive": drive, "n": n, "over": over, "units": units, "csv": csv, "plot": plot, "stroke": stroke, "error": error, "step": step, "integrator": integrator, "scalar": scalar, "threads": threads}
-        return self._call(results.Sweep, "sweep", options, columns=True, picture=picture, progress=progress)
+        found: results.Sweep = self._call(results.Sweep, "sweep", options, columns=True, picture=picture, progress=progress)
+        return found
 
     def population(
         self,
@@ -378,7 +380,7 @@ class SceneCommands:
             out: Writes the results of the units to a file that `slipfit merge` reads.
             resume: Continues where an interrupted run with the same `out` stopped.
             threads: Number of threads; all cores if not given. The result does not depend on it.
-            columns: Whether the result has a row for each unit, as of --csv.
+            columns: Whether the result has a row for each unit, as `csv` writes it.
             picture: Whether the result has pictures; if None, in notebooks.
             progress: A function, or whether a line on standard error says how far it is.
 
@@ -388,7 +390,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"drive": drive, "units": units, "seed": seed, "opening": opening, "force_limit": force_limit, "correlation": correlation, "rare": rare, "csv": csv, "plot": plot, "plot_distance": plot_distance, "page": page, "shard": shard, "out": out, "resume": resume, "threads": threads}
-        return self._call(results.Population, "population", options, columns=columns, picture=picture, progress=progress)
+        found: results.Population = self._call(results.Population | results.Shard, "population", options, columns=columns, picture=picture, progress=progress)
+        return found
 
     def table(
         self,
@@ -456,7 +459,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"output": output, "drive": drive, "over": over, "speeds": speeds, "end": end, "max_error": max_error, "n": n, "plot": plot, "production": production, "units": units, "seed": seed, "noise": noise, "stroke_friction": stroke_friction, "period": period, "bytes": bytes, "threads": threads}
-        return self._call(results.Table, "table", options, picture=picture, progress=progress)
+        found: results.Table = self._call(results.Table, "table", options, picture=picture, progress=progress)
+        return found
 
     def kernel(
         self,
@@ -491,7 +495,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"output": output, "crate": crate, "core": core, "step": step, "integrator": integrator}
-        return self._call(results.Kernel, "kernel", options, progress=progress)
+        found: results.Kernel = self._call(results.Kernel, "kernel", options, progress=progress)
+        return found
 
     def fmu(
         self,
@@ -522,7 +527,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"output": output, "fmi": fmi, "core": core, "step": step, "integrator": integrator}
-        return self._call(results.Fmu, "fmu", options, progress=progress)
+        found: results.Fmu = self._call(results.Fmu, "fmu", options, progress=progress)
+        return found
 
     def precision(
         self,
@@ -566,7 +572,8 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"drive": drive, "n": n, "csv": csv, "plot": plot, "stability": stability, "random": random, "seed": seed, "threads": threads}
-        return self._call(results.Precision, "precision", options, picture=picture, progress=progress)
+        found: results.Precision = self._call(results.Precision, "precision", options, picture=picture, progress=progress)
+        return found
 
 
 def capability(
@@ -604,7 +611,8 @@ def capability(
     options: dict[str, Option] = {"group": group, "label": label, "ignore": ignore, "family": family, "page": page}
     with Files() as files:
         path = files.of(file)
-        return call(results.Capability, "capability", [path], options, repeated=REPEATED, progress=progress)
+        found: results.Capability = call(results.Capability, "capability", [path], options, progress=progress)
+    return found
 
 
 def merge(
@@ -616,7 +624,7 @@ def merge(
     plots: Option = None,
     picture: bool | None = None,
     progress: Progress = None,
-) -> Result:
+) -> results.Population | results.Tolerance:
     """Joins the parts that `tolerance `shard` or `population `shard` wrote.
 
     The result has the same bytes as that of one run without `shard`.
@@ -637,4 +645,5 @@ def merge(
     """
     options: dict[str, Option] = {"out": out, "n": n, "csv": csv, "plots": plots}
     paths = [path_of(path) for path in files]
-    return call(Result, "merge", paths, options, picture=picture, progress=progress)
+    found: results.Population | results.Tolerance = call(results.Population | results.Tolerance, "merge", paths, options, picture=picture, progress=progress)
+    return found

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 
 class Problem(NamedTuple):
@@ -31,10 +32,13 @@ class InputError(SlipfitError, ValueError):
 class SceneError(InputError):
     """A scene that cannot be read. Its message is that of the command line."""
 
-    def __init__(self, message: str, problems: list[tuple[str, str, int, int, str]] = []) -> None:
+    def __init__(self, message: str, problems: list[tuple[str, str, int, int, str]]) -> None:
         super().__init__(message, problems)
-        #: All mistakes, in the order of the text.
-        self.problems: list[Problem] = [Problem(*problem) for problem in problems]
+
+    @property
+    def problems(self) -> list[Problem]:
+        """All mistakes, in the order of the text."""
+        return [Problem(*problem) for problem in self.args[1]]
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -62,3 +66,14 @@ class SceneError(InputError):
 
 class WorkError(SlipfitError, RuntimeError):
     """Valid input without a result, such as a full disk; exit code 1 of the command line."""
+
+
+def reword(error: SlipfitError, change: Callable[[str], str]) -> None:
+    """Changes all texts of an error."""
+
+    def changed(value: Any) -> Any:
+        if isinstance(value, str):
+            return change(value)
+        return type(value)(map(changed, value)) if isinstance(value, (list, tuple)) else value
+
+    error.args = changed(error.args)

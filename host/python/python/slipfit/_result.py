@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import html
 import importlib
+import keyword
+import math
 import types
 import typing
 from collections.abc import Iterator, Mapping
-from typing import Any, Union
+from typing import TYPE_CHECKING, Any, Union
 
+from slipfit._errors import InputError
 from slipfit._slipfit import Column, Columns
 
 
@@ -25,8 +28,9 @@ class Result:
 
     def __init__(self, fields: Mapping[str, Any], pictures: Mapping[str, str] | None = None) -> None:
         kinds = _kinds(type(self))
-        self._fields = {name: _converted(value, kinds.get(name) or kinds.get(name + "_", Any)) for name, value in fields.items()}
-        self.pictures = dict(pictures or {})
+        # Results do not change.
+        self.__dict__["_fields"] = {name: _converted(value, kinds.get(name, Any)) for name, value in fields.items()}
+        self.__dict__["pictures"] = dict(pictures or {})
 
     def __getitem__(self, key: str) -> Any:
         return self._fields[key]
@@ -40,22 +44,28 @@ class Result:
     def __len__(self) -> int:
         return len(self._fields)
 
-    def __getattr__(self, name: str) -> Any:
-        # Not of a result that is being unpickled and has no fields yet.
-        if name != "_fields":
-            # A field whose name is a keyword of Python, such as yield, is yield_ as an attribute.
-            field = name[:-1] if name.endswith("_") and name[:-1] in self._fields else name
-            if field in self._fields:
-                return self._fields[field]
-            if not name.startswith("_") and name in _kinds(type(self)):
+    if TYPE_CHECKING:
+        _fields: dict[str, Any]
+    else:
+        # Type checkers know the annotated fields alone.
+        def __getattr__(self, name: str) -> Any:
+            # A result that is being unpickled has no fields yet.
+            fields = self.__dict__.get("_fields", {})
+            field = _field(name)
+            if field in fields:
+                return fields[field]
+            if field in _kinds(type(self)):
                 return None
-        raise AttributeError(f"the result has no field {name!r}, it has {', '.join(self.__dict__.get('_fields', ()))}")
+            raise AttributeError(f"the result has no field {name!r}, it has {', '.join(fields)}")
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError("a result cannot be changed; to_dict() is a copy that can")
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._fields]
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Result) and self._fields == other._fields
+        return type(self) is type(other) and self._fields == other._fields
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {', '.join(f'{name} {_short(value, 60)}' for name, value in self._fields.items())}>"
@@ -73,27 +83,38 @@ class Result:
         return plain
 
     def plot(self, *names: str) -> Any:
-        """Draws columns with matplotlib, which has to be installed: those of these ``names``, or the first six that are numbers.
+        """Draws ``columns`` or ``draws`` with matplotlib, which has to be installed: those of these ``names``, or the first six of numbers.
 
-        They are drawn over time or level, those of units as histograms. Returns the figure.
+        They are drawn over time, level or the values of a key, with a line for each value of a second key. Those of units are drawn
+        as histograms. Returns the figure.
         """
-        columns = self._fields.get("columns")
+        columns = self._fields.get("columns") or self._fields.get("draws")
         if not isinstance(columns, Columns):
-            raise AttributeError("the result has no columns to draw")
-        plt: Any = importlib.import_module("matplotlib.pyplot")
-        first, *rest = columns.values()
-        numbers = [column for column in rest if isinstance(column[0], float)]
+            raise InputError("the result has no columns to draw; population and tolerance have them if they are asked for")
+        keys = len(self._fields.get("keys", ())) or 1
+        first, *second = columns.values()[:keys]
+        numbers = [column for column in columns.values()[keys:] if column.kind == "numbers"]
         drawn = [columns[name] for name in names] or numbers[:MOST_DRAWN]
-        figure, axes = plt.subplots(len(drawn), sharex=first.name != "unit", squeeze=False, figsize=(7, 1.8 * len(drawn)), layout="constrained")
+        if not drawn:
+            raise InputError(f"no column has numbers to draw, there is {', '.join(columns)}")
+        plt: Any = importlib.import_module("matplotlib.pyplot")
+        of_units = first.name == "unit"
+        figure, axes = plt.subplots(len(drawn), sharex=not of_units, squeeze=False, figsize=(7, 1.8 * len(drawn)), layout="constrained")
         for axis, column in zip(axes[:, 0], drawn):
-            if first.name == "unit":
+            if of_units:
                 axis.hist([number for number in column.tolist() if number is not None], bins=50)
                 axis.set_xlabel(_labelled(column))
                 axis.set_ylabel("units")
-            else:
-                axis.plot(first.tolist(), column.tolist())
-                axis.set_ylabel(_labelled(column))
-                axis.set_xlabel(_labelled(first) if column is drawn[-1] else "")
+                continue
+            rows = list(zip(first.tolist(), *(key.tolist() for key in second), column.tolist()))
+            for value in dict.fromkeys(row[1:-1] for row in rows):
+                line = [(row[0], row[-1]) for row in rows if row[1:-1] == value]
+                label = ", ".join(f"{_labelled(key)} {_short(one)}" for key, one in zip(second, value))
+                axis.plot(*zip(*line), marker="o" if len(line) == 1 else "", label=label)
+            axis.set_ylabel(_labelled(column))
+            axis.set_xlabel(_labelled(first) if column is drawn[-1] else "")
+        if second and not of_units:
+            axes[0, 0].legend()
         return figure
 
 
@@ -106,6 +127,11 @@ def _labelled(column: Column) -> str:
     return column.name if stated else f"{column.name} ({column.unit})"
 
 
+def _field(name: str) -> str:
+    """The field of an attribute: yield of yield_, as yield is a keyword of Python."""
+    return name[:-1] if name.endswith("_") and keyword.iskeyword(name[:-1]) else name
+
+
 #: The types of the fields of each class.
 _KINDS: dict[type, dict[str, Any]] = {}
 
@@ -113,16 +139,21 @@ _KINDS: dict[type, dict[str, Any]] = {}
 def _kinds(kind: type) -> dict[str, Any]:
     """The types of a result's fields."""
     if kind not in _KINDS:
-        _KINDS[kind] = {name: of for name, of in typing.get_type_hints(kind).items() if name != "pictures"}
+        hints = typing.get_type_hints(kind).items()
+        _KINDS[kind] = {_field(name): of for name, of in hints if name not in ("_fields", "pictures")}
     return _KINDS[kind]
+
+
+def result(kind: Any, fields: Mapping[str, Any], pictures: Mapping[str, str]) -> Any:
+    """The result of this kind, or of the kind of a union that fits best."""
+    return _best(fields, kind)(fields, pictures)
 
 
 def _converted(value: Any, kind: Any) -> Any:
     """``value`` with the objects in it as results."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if origin in (Union, types.UnionType):
-        fitting = [one for one in arguments if _fits(value, one)]
-        return _converted(value, fitting[0] if fitting else Any)
+        return _converted(value, _best(value, kind))
     if isinstance(value, list):
         return [_converted(one, arguments[0] if origin is list else Any) for one in value]
     if isinstance(value, dict):
@@ -132,13 +163,31 @@ def _converted(value: Any, kind: Any) -> Any:
     return float(value) if kind is float and isinstance(value, int) else value
 
 
-def _fits(value: Any, kind: Any) -> bool:
+def _best(value: Any, kind: Any) -> Any:
+    """The kind itself, or that of a union which fits the value best."""
+    union = typing.get_origin(kind) in (Union, types.UnionType)
+    return min(typing.get_args(kind), key=lambda one: _misfit(value, one)) if union else kind
+
+
+def _misfit(value: Any, kind: Any) -> float:
+    """How many fields of a value a kind does not have, or the value of the kind; infinite for another sort of value."""
+    kind = _best(value, kind)
     origin = typing.get_origin(kind) or kind
-    if isinstance(value, dict):
-        return origin is dict or (isinstance(origin, type) and issubclass(origin, Result))
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return isinstance(origin, type) and isinstance(value, origin)
-    return origin in (int, float)
+    if kind is Any:
+        return 0.0
+    if isinstance(value, Mapping):
+        if isinstance(origin, type) and issubclass(origin, Result):
+            of = _kinds(origin)
+            needed = {name for name, kind in of.items() if type(None) not in typing.get_args(kind)}
+            return len(value.keys() - of.keys()) + len(needed - value.keys())
+        return 0.0 if origin is dict else math.inf
+    if isinstance(value, list):
+        if origin is not list:
+            return math.inf
+        return max((_misfit(one, typing.get_args(kind)[0]) for one in value), default=0.0)
+    if origin in (int, float):
+        return 0.0 if isinstance(value, (int, float)) and not isinstance(value, bool) and (origin is float or value == int(value)) else math.inf
+    return 0.0 if isinstance(origin, type) and isinstance(value, origin) else math.inf
 
 
 def _plain(value: Any) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import reprlib
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -11,9 +12,9 @@ from types import TracebackType
 from typing import Any
 
 from slipfit import _slipfit, results
-from slipfit._call import Files, Found, Option, Table, call, is_table, path_of, plain, run, words
+from slipfit._call import Files, Option, Table, call, is_table, path_of, plain, run, words
 from slipfit._command import PROGRAM
-from slipfit._commands import REPEATED, SceneCommands
+from slipfit._commands import SceneCommands
 from slipfit._errors import InputError, WorkError
 from slipfit._progress import Progress
 
@@ -34,13 +35,19 @@ def _toml(key: str, value: Any, files: Files | None) -> str:
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(_toml(key, one, files) for one in value)}]"
     allowed = "allowed are numbers, texts, lists, dicts, and columns where a file is asked for"
-    raise InputError(f"the override {key} is {value!r}, {allowed}")
+    raise InputError(f"the override {key} is {reprlib.repr(value)}, {allowed}")
 
 
 def _key(name: object) -> str:
     if not isinstance(name, str):
         raise InputError(f"a key is {name!r}, allowed is a str")
     return name
+
+
+def _overrides(overrides: Mapping[str, Any] | None) -> dict[str, Any]:
+    if overrides is not None and not isinstance(overrides, Mapping):
+        raise InputError(f"overrides are {reprlib.repr(overrides)}, allowed is a dict of keys and values")
+    return dict(overrides or {})
 
 
 class Scene(SceneCommands):
@@ -54,7 +61,7 @@ class Scene(SceneCommands):
     def __init__(self, source: str | os.PathLike[str], overrides: Mapping[str, Any] | None = None) -> None:
         self._source = path_of(source)
         self._text: str | None = None
-        self._overrides: dict[str, Any] = dict(overrides or {})
+        self._overrides = _overrides(overrides)
 
     @classmethod
     def from_text(
@@ -69,7 +76,7 @@ class Scene(SceneCommands):
 
     def with_overrides(self, overrides: Mapping[str, Any]) -> Scene:
         """The same scene with further keys set, after those that are set already."""
-        scene = Scene(self._source, {**self._overrides, **overrides})
+        scene = Scene(self._source, {**self._overrides, **_overrides(overrides)})
         scene._text = self._text
         return scene
 
@@ -78,11 +85,12 @@ class Scene(SceneCommands):
         """The scene's text (TOML), without the overrides."""
         if self._text is not None:
             return self._text
-        if not Path(self._source).is_file() and self._source in (scenes := _slipfit.shipped()):
-            return scenes[self._source]
         try:
+            if not Path(self._source).is_file() and self._source in (scenes := _slipfit.shipped()):
+                return scenes[self._source]
             return Path(self._source).read_text("utf-8")
-        except (OSError, UnicodeError) as error:
+        # A name with a NUL, and what is not UTF-8, are ValueErrors.
+        except (OSError, ValueError) as error:
             raise InputError(f"cannot read the scene {self._source}: {error}") from None
 
     def __repr__(self) -> str:
@@ -92,12 +100,12 @@ class Scene(SceneCommands):
         return self.check(picture=True)._repr_html_()
 
     def _call(
-        self, kind: type[Found], command: str, options: Mapping[str, Option], others: Sequence[Table] = (), **wanted: Any
-    ) -> Found:
+        self, kind: Any, command: str, options: Mapping[str, Option], others: Sequence[Table] = (), **wanted: Any
+    ) -> Any:
         with Files() as files:
             sets = [f"{_key(key)}={_toml(key, value, files)}" for key, value in self._overrides.items()]
             first = [self._source, *(files.of(one) for one in others)]
-            return call(kind, command, first, {"set": sets, **options}, repeated=REPEATED, scene=self._text, **wanted)
+            return call(kind, command, first, {"set": sets, **options}, scene=self._text, **wanted)
 
     def identify(
         self,
@@ -127,14 +135,15 @@ class Scene(SceneCommands):
         elif not isinstance(records, Sequence):
             raise InputError(f"records are {records!r}, allowed are files, columns, and lists of them")
         options: dict[str, Option] = {"each": each, "n": n, "output": output, "page": page}
-        return self._call(results.Identification, "identify", options, records, progress=progress)
+        found: results.Identification = self._call(results.Identification, "identify", options, records, progress=progress)
+        return found
 
     def watch(self, *, port: int | None = None) -> Watch:
         """Serves a page of the scene's file, which follows each save, until it is stopped: the command ``watch``."""
         if self._text is not None:
             raise InputError("only a file can be watched; this scene is a text")
         sets = [f"{_key(key)}={_toml(key, value, None)}" for key, value in self._overrides.items()]
-        return Watch(["watch", *words({"set": sets, "port": port}, REPEATED), "--", self._source])
+        return Watch(["watch", *words("watch", {"set": sets, "port": port}), "--", self._source])
 
     @staticmethod
     def schema() -> dict[str, Any]:
@@ -185,7 +194,7 @@ def import_qif(
 
     Written to ``output``, or into the scene ``update``, if one is given; then the text is what the command says about it.
     """
-    options = words({"output": output, "name": name, "update": update}, frozenset())
+    options = words("import", {"output": output, "name": name, "update": update})
     return run(["import", *options, "--", path_of(model)])[0]
 
 

@@ -34,7 +34,7 @@ class Check(Result):
     #: All gaps of the scene.
     gaps: list[Gap] | list[Play] | None
     #: The level that closes each pair of gaps, the first to close first.
-    n_star: list[Closing] | None
+    n_star: list[ClosingLevel] | None
     #: Whether the slide locks itself; None if no two pins guide it sideways.
     guide: Guide | None
     #: What to know before trusting a run.
@@ -55,7 +55,7 @@ class Gap(Result):
     class_: str
 
 
-class Closing(Result):
+class ClosingLevel(Result):
     """Closing."""
     #: The pin.
     pin: str
@@ -137,7 +137,7 @@ class Simulation(Result):
     #: Title of the scene.
     title: str
     #: Tolerance level: one for all gaps, or sixteen: left, right, rail and wall of each of four pins, 0 where there
-    #: is no such gap. With ``--unit``: by how many σ each gap is below its mean.
+    #: is no such gap. With ``unit``: by how many σ each gap is below its mean.
     n: list[float]
     #: The longest simulated time.
     duration_s: float | None
@@ -174,12 +174,12 @@ class Simulation(Result):
     #: How far the run can be trusted.
     trust: Trust | None
     #: The controller's run of the same unit; missing if the run itself is the controller's.
-    controller: Beside | ControllerAMechanism | None
-    #: Where the energy went (J); with --audit.
+    controller: ControllerComparison | MechanismController | None
+    #: Where the energy went (J); with ``audit``.
     audit_j: dict[str, float] | None
     #: What to know before trusting the run.
     warnings: list[str]
-    #: The motion, a row every ``every``, as of --csv.
+    #: The motion, a row every ``every``, as ``csv`` writes it.
     columns: Columns
     #: Integration scheme.
     integrator: str | None
@@ -222,34 +222,6 @@ class Solver(Result):
     worst_residual: float
 
 
-class Outcome(Result):
-    """Outcome."""
-    #: Last time that the speed rises through 0.2 mm/s after the ramp's start (s); None if it does not.
-    breakaway: float | None
-    #: Magnitude of the greatest force, driving or braking, from the ramp's start on (N; N·m of a drive that turns);
-    #: None if the run ends before.
-    peak_force: float | None
-    #: Mean force over the last 20 ms (N, N·m); None if it varies by 1 % or more.
-    settled_force: float | None
-    #: Speed at the end (m/s, rad/s).
-    final_velocity: float
-    #: When and where the run ended.
-    end: Moment
-    #: Whether the run came to the end of the stroke; None if the scene states none.
-    stroke_reached: bool | None
-    #: Least and greatest velocity (m/s) over the last 20 ms, if a limit between two verdicts lies between them; the
-    #: verdict is then that of the last instant.
-    swings: list[float] | None
-    #: From where on it stays slower than half of the command; None if it does not.
-    slows: Moment | None
-    #: From where on it stays slower than 1 % of the command; None if it does not.
-    stops: Moment | None
-    #: Where the slide tips: a wall that was free meets its pin; None if none does.
-    tips: Moment | None
-    #: Runs, crawls, jammed, overruns, undecided.
-    verdict: str
-
-
 class Moment(Result):
     """Moment."""
     #: Time (s).
@@ -275,7 +247,7 @@ class Trust(Result):
     better_step_tried: bool
 
 
-class Beside(Result):
+class ControllerComparison(Result):
     """Beside."""
     #: How it was computed.
     solver: Solver
@@ -285,23 +257,7 @@ class Beside(Result):
     trust: Trust
 
 
-class Samples(Result):
-    """Samples."""
-    #: Time (s).
-    t: list[float]
-    #: Velocity along the drive (m/s).
-    vz: list[float]
-    #: Drive force (N).
-    force: list[float]
-    #: Displacement across (m).
-    x: list[float]
-    #: Displacement up (m).
-    y: list[float]
-    #: Displacement along the drive (m).
-    z: list[float]
-
-
-class ControllerAMechanism(Result):
+class MechanismController(Result):
     """Controller of a mechanism."""
     #: Integration scheme.
     integrator: str
@@ -362,7 +318,7 @@ class Sweep(Result):
     levels: list[Level] | None
     #: What to know before trusting the runs.
     warnings: list[str]
-    #: Figures of each level or value, as of --csv.
+    #: Figures of each level or value, as ``csv`` writes it.
     columns: Columns
     #: The keys that were swept.
     keys: list[str] | None
@@ -460,7 +416,7 @@ class PointOverKeys(Result):
     tips: Moment | None
     #: Runs, crawls, jammed, overruns, undecided.
     verdict: str
-    #: What units of the production do, the same at every point; None without --units.
+    #: What units of the production do, the same at every point; None without ``units``.
     population: Statistics | None
 
 
@@ -489,13 +445,13 @@ class Population(Result):
     levels: list[LevelInPopulation]
     #: All gaps tighter and all gaps looser, compared with random combinations.
     hypothesis: Hypothesis
-    #: Probabilities that --rare estimates; None without it.
+    #: Probabilities that ``rare`` estimates; None without it.
     rare: RareMalfunction | None
     #: Up to five units: malfunctioning ones first, by shortest travel, then by greatest force.
     worst: list[Unit]
     #: What to know before trusting a run.
     warnings: list[str]
-    #: A row for each unit, as of --csv; if they were asked for.
+    #: A row for each unit, as ``csv`` writes it; if they were asked for.
     columns: Columns | None
 
 
@@ -681,7 +637,7 @@ class RareMalfunction(Result):
     #: Probability of any kind on any side.
     malfunction: Probability
     #: The same by kind and side; a unit belongs to one of them at most.
-    parts: list[PartMalfunction]
+    parts: list[PartOfMalfunction]
     #: Units that were simulated for it.
     simulated: int
     #: Those of them that come to no verdict or whose parameters are out of bounds.
@@ -707,7 +663,7 @@ class Probability(Result):
     reason: str | None
 
 
-class PartMalfunction(Result):
+class PartOfMalfunction(Result):
     """Part of malfunction."""
     #: Crawls, jams, overruns, over-limit (does its job with too much force).
     kind: str
@@ -732,7 +688,7 @@ class PartMalfunction(Result):
 
 class Unit(Result):
     """Unit."""
-    #: Number of the unit in the production, for ``simulate --unit``.
+    #: Number of the unit in the production, for ``simulate ``unit``.
     number: int
     #: Mean over the gaps of how far each is below its mean, in its standard deviations; positive is tighter.
     tightness: float
@@ -796,14 +752,14 @@ class Characteristic(Result):
     #: Greatest value.
     greatest: float
     #: The distribution that intervals, indices and shares are of.
-    distribution: DistributionParts
+    distribution: DistributionOfParts
     #: Pp and Ppk, by points of the distribution (ISO 22514-2).
     performance: Indices
     #: Shares outside the limits.
     failing: Failing
     #: Parts outside the limits; None without limits.
     counted: CountedParts | None
-    #: Figures within subgroups; None without --group.
+    #: Figures within subgroups; None without ``group``.
     within: Subgroups | None
     #: Test of normality; None below eight parts.
     normality: Normality | None
@@ -913,11 +869,11 @@ class Outlier(Result):
     distance: float
 
 
-class DistributionParts(Result):
+class DistributionOfParts(Result):
     """Distribution of parts."""
     #: Its family.
     family: str
-    #: Whether --family stated it; otherwise the parts chose it.
+    #: Whether ``family`` stated it; otherwise the parts chose it.
     stated: bool
     #: Its parameters: name and value of each.
     parameters: list[Any]
@@ -968,11 +924,11 @@ class Identification(Result):
     #: Every law with its estimate; of a slide one.
     compared: list[Identified] | None
     #: What to know before trusting a figure.
-    warnings: list[str] | None
+    warnings: list[str]
     #: What is found of each unit.
     units: list[IdentifiedUnit] | None
     #: Each parameter over all units.
-    between: list[MeanUnits] | None
+    between: list[MeanOfUnits] | None
 
 
 class Identified(Result):
@@ -982,7 +938,7 @@ class Identified(Result):
     #: How much worse it is than the best law, by the criterion of Schwarz; above 10 decisively.
     behind: float
     #: Whether it explains the record.
-    lack: LackFit
+    lack: LackOfFit
     #: Estimates.
     parameters: list[IdentifiedParameter]
     #: Correlations of the parameters.
@@ -1001,7 +957,7 @@ class Identified(Result):
     residual_deviation: float
 
 
-class LackFit(Result):
+class LackOfFit(Result):
     """Lack of fit."""
     #: Root of the residuals' squares over that of the forces.
     relative_error: float
@@ -1064,7 +1020,7 @@ class IdentifiedUnit(Result):
     warnings: list[str]
 
 
-class MeanUnits(Result):
+class MeanOfUnits(Result):
     """Mean of units."""
     #: Its name.
     name: str
@@ -1206,7 +1162,7 @@ class Allocation(Result):
     malfunctions: Confirmation | None
     #: Whether that holds over all unknowns; None unless it is required and something is unknown.
     uncertain: UncertainRequirement | None
-    #: Cost against defects; empty without --csv and --plot.
+    #: Cost against defects; empty without ``csv`` and ``plot``.
     curve: list[CurvePoint]
     #: What to know before trusting it.
     warnings: list[str]
@@ -1382,6 +1338,8 @@ class Kernel(Result):
     #: Hash of the scene's physics, hexadecimal, as in flash tables; missing for a mechanism without a drive or with
     #: several.
     scene_hash: str | None
+    #: What to know before trusting the result.
+    warnings: list[str]
 
 
 class Tolerance(Result):
@@ -1392,6 +1350,8 @@ class Tolerance(Result):
     title: str
     #: Pseudo-random, latin-hypercube, scrambled-sobol.
     method: str | None
+    #: Units of all designs together; with lhs and sobol that is ``samples`` times ``replicates``.
+    samples: int | None
     #: Independent designs that they were split into.
     replicates: int | None
     #: Seed of the production.
@@ -1399,7 +1359,7 @@ class Tolerance(Result):
     #: Share of units with all measures within their limits; None if no measure has limits.
     yield_of_all: Estimate | None
     #: Measures of the product, in the order of the scene.
-    measures: list[Measure] | list[Given] | list[Effect]
+    measures: list[Measure] | list[StatedGap] | list[Effect]
     #: Correlations of the measures, row by row.
     correlation: list[list[float]] | None
     #: Lower and upper end of the 95 % interval of each correlation; None where a measure does not vary.
@@ -1413,8 +1373,10 @@ class Tolerance(Result):
     derived_m: Derived | None
     #: The pair of gaps that closes at the lowest level; only of a slide with a product.
     tightest: Closes | None
-    #: The measures of each unit, as of --draws; if they were asked for.
+    #: The measures of each unit; if they were asked for.
     draws: Columns | None
+    #: What to know before trusting the result.
+    warnings: list[str]
     #: Full-factorial, two-level, three-level.
     design: str | None
     #: Combinations that were computed.
@@ -1429,7 +1391,7 @@ class Analysis(Result):
     title: str
     #: Pseudo-random, latin-hypercube, scrambled-sobol.
     method: str
-    #: Units of all designs together; with lhs and sobol that is ``--samples`` times ``replicates``.
+    #: Units of all designs together; with lhs and sobol that is ``samples`` times ``replicates``.
     samples: int
     #: Independent designs that they were split into.
     replicates: int
@@ -1728,7 +1690,7 @@ class Closes(Result):
     n: float
 
 
-class Given(Result):
+class StatedGap(Result):
     """Given."""
     #: Pin and surface.
     name: str
@@ -1756,7 +1718,7 @@ class Effect(Result):
     shares: list[float] | None
 
 
-class AShardToleranceOrPopulation(Result):
+class Shard(Result):
     """A shard of `tolerance` or `population`."""
     #: Version of this format.
     json_version: int
@@ -1768,6 +1730,8 @@ class AShardToleranceOrPopulation(Result):
     units: int
     #: The file that was written.
     file: str
+    #: What to know before trusting the result.
+    warnings: list[str]
 
 
 class Precision(Result):
@@ -1782,6 +1746,8 @@ class Precision(Result):
     floors: list[Floor] | None
     #: A solver at a setting, on a problem.
     points: list[Point] | None
+    #: What to know before trusting the result.
+    warnings: list[str]
     #: Seed of the random combinations.
     seed: int | None
     #: One parameter varied, the others as in the scene.
@@ -1878,6 +1844,8 @@ class Fmu(Result):
     step_s: float
     #: Parameters, inputs and outputs.
     variables: list[Variable]
+    #: What to know before trusting the result.
+    warnings: list[str]
 
 
 class Variable(Result):

@@ -34,7 +34,7 @@ use self::{
 };
 use super::{
     arguments::{SceneArguments, ThreadArguments},
-    check,
+    call, check,
     failure::Failure,
     population::uncertain,
     terminal::{counter, given, print, print_json, progress, warn},
@@ -230,7 +230,7 @@ impl Arguments {
                     checked.units
                 )));
             }
-            let points = if self.csv.is_some() || self.plot.is_some() {
+            let points = if self.csv.is_some() || self.plot.is_some() || call::wants_pictures() {
                 let bar = progress("cost against defects", LEVELS.len());
                 let points = cost_against_defects(&processes, &tolerances, &model, self.seed, || bar.inc(1))?;
                 bar.finish_and_clear();
@@ -246,11 +246,10 @@ impl Arguments {
         let (mut report, tolerances) = self.threads.install(work)??;
         let simulated = file.slide.iter().filter(|_| function.is_some());
         report.warnings.extend(simulated.flat_map(check::warnings_of));
-        let csv = self.csv.as_ref().map(|path| Ok::<_, anyhow::Error>((path, curve::csv(&report)?))).transpose()?;
-        let svg = self.plot.as_ref().map(|path| curve::svg(&report).map(|svg| (path, svg.into_bytes()))).transpose();
-        for (path, bytes) in csv.into_iter().chain(svg.map_err(anyhow::Error::from)?) {
-            files::write(path, &bytes)?;
+        if let Some(path) = &self.csv {
+            files::write(path, &curve::csv(&report)?)?;
         }
+        call::picture(self.plot.as_deref(), "cost", || curve::svg(&report))?;
         if let Some(path) = &self.write {
             files::write(path, with_tolerances(&text, &product.costed, &tolerances, DIGITS).as_bytes())?;
         }

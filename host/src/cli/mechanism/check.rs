@@ -3,13 +3,13 @@
 use std::{fmt::Write, path::Path};
 
 use serde::Serialize;
-use slipfit_system::files;
 use slipfit_tolerance::number::{fixed, level, or_dash, ten_digits};
 
 use super::{GapReport, gap_reports};
 use crate::{
     cli::{
         arguments::SceneArguments,
+        call,
         failure::Failure,
         self_locking::self_locking,
         terminal::{print, print_json, text_table, warn},
@@ -45,9 +45,7 @@ pub fn check(
     let freedom = Freedom::of(mechanism)?;
     let mut warnings = warnings(mechanism, &freedom);
     warnings.extend(of_product);
-    if let Some(path) = plot {
-        files::write(path, mechanism.drawing().as_bytes())?;
-    }
+    call::picture(plot, "mechanism", || Ok(mechanism.drawing()))?;
     if scene.json {
         let gaps = gap_reports(mechanism, &gaps);
         let title = &mechanism.title;

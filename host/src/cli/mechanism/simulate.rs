@@ -111,11 +111,9 @@ pub fn simulate(mechanism: &Mechanism, unit: &OneUnit, every: f64, wanted: &Want
         _ => &desk,
     };
     call::columns(Want::Columns, wanted.csv.as_deref(), || Ok(of_samples(&one.samples)))?;
-    if let Some(path) = wanted.plot {
-        let columns = plotted(mechanism);
-        let svg = columns_over_time(&one.samples, &columns, &mechanism.title, label).map_err(anyhow::Error::from)?;
-        files::write(path, svg.as_bytes())?;
-    }
+    call::picture(wanted.plot.as_deref(), "motion", || {
+        columns_over_time(&one.samples, &plotted(mechanism), &mechanism.title, label)
+    })?;
     let computed =
         || computed(mechanism, &desk, &agreement) + &controllers(mechanism, controller.as_ref(), wanted.by_controller);
     let words = || described(mechanism, label, one) + &computed();

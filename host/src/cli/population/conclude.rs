@@ -20,6 +20,7 @@ use super::{
 use crate::{
     cli::{
         by_one_drive::{ByOneDrive, FINER, why_undecided},
+        call,
         failure::Failure,
         terminal::{print, print_json, text_table, warn},
     },
@@ -92,10 +93,9 @@ impl Arguments {
         warnings.extend(product.into_iter().flat_map(|product| product.warnings.iter().cloned()));
         warnings.extend(faults(subject, production, &found.population)?);
         warnings.extend(found.unknown.as_ref().map(uncertain::warnings).transpose()?.unwrap_or_default());
-        if let Some(path) = &self.plot {
-            let svg = units::forces(subject, &found.population.tally, self.force_limit).map_err(anyhow::Error::from)?;
-            files::write(path, svg.as_bytes())?;
-        }
+        call::picture(self.plot.as_deref(), "forces", || {
+            units::forces(subject, &found.population.tally, self.force_limit)
+        })?;
         let distances = || units::hypothesis(title, &found.hypothesis).map_err(anyhow::Error::from);
         if let Some(path) = &self.plot_distance {
             files::write(path, distances()?.as_bytes())?;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use slipfit_system::{files, interrupt, parallel};
+use slipfit_system::{interrupt, parallel};
 use slipfit_tolerance::{
     number::{fixed, or_dash, ten_digits},
     product::Product,
@@ -132,13 +132,12 @@ impl Arguments {
         })??;
         bar.finish_and_clear();
         call::columns(Want::Columns, self.csv.as_deref(), || Ok(columns(&keys, kind, &found)))?;
-        if let Some(path) = &self.plot {
+        call::picture(self.plot.as_deref(), "values", || {
             let swept: Vec<Swept> = found.iter().map(shown).collect();
             let named: Vec<OverKey> =
                 keys.iter().map(|key| OverKey { name: &key.name, count: key.values.count }).collect();
-            let svg = over_keys(&named, &swept, kind, of.subject().title()).map_err(anyhow::Error::from)?;
-            files::write(path, svg.as_bytes())?;
-        }
+            over_keys(&named, &swept, kind, of.subject().title())
+        })?;
         let mut warnings = gathered(&keys, &found);
         warnings.extend(doubts(&keys, &found));
         if self.scene.json {

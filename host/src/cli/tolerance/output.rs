@@ -17,7 +17,7 @@ use slipfit_tolerance::{
 use super::{gaps::Columns, tables::tables};
 use crate::{
     cli::{
-        endings,
+        call, endings,
         failure::{Failure, refused},
         terminal::{print, print_json, progress},
     },
@@ -26,7 +26,7 @@ use crate::{
     setup::{Measured, Scene},
     show::{
         measures_csv::measures_csv,
-        tolerances::{file_names, pictures},
+        tolerances::{Picture, file_names, pictures},
     },
 };
 
@@ -127,8 +127,11 @@ impl OutputArguments {
         }
         if let Some(folder) = &self.plots {
             files::prepare_folder(folder).map_err(refused)?;
-            for picture in pictures(&report, study, tallies).map_err(anyhow::Error::from)? {
-                files::write(&folder.join(picture.file), picture.svg.as_bytes())?;
+        }
+        if self.plots.is_some() || call::wants_pictures() {
+            for Picture { file, svg, .. } in pictures(&report, study, tallies).map_err(anyhow::Error::from)? {
+                let path = self.plots.as_ref().map(|folder| folder.join(&file));
+                call::picture(path.as_deref(), file.trim_end_matches(".svg"), || Ok(svg))?;
             }
         }
         let columns = slide.map(|slide| Columns::new(slide, self.level(slide)));

@@ -5,7 +5,7 @@
 //! less; steps get shorter until none of two thousandths is left that saves anything (a pattern search: Kolda, Lewis and Torczon, SIAM Review
 //! 45, 2003). It assumes that a tighter tolerance is never worse, and finds a local minimum.
 
-use rayon::prelude::*;
+use slipfit_system::parallel;
 
 use super::{
     AllocateError,
@@ -101,7 +101,7 @@ fn step_from(
         if slipfit_system::interrupt::requested() {
             return Err(AllocateError::Interrupted);
         }
-        let values: Vec<_> = trials.par_iter().map(|next| figures.values(&next.tolerances)).collect();
+        let values = parallel::map(trials, |next| figures.values(&next.tolerances));
         for (next, values) in trials.iter().zip(values) {
             if values?.iter().zip(allowed).all(|(figure, allowed)| *figure <= allowed + MET) {
                 return Ok(Some(next.clone()));

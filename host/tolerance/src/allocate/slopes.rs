@@ -1,6 +1,6 @@
 //! How figures grow with tolerances: each is taken for a constant and a weighted sum of powers of the tolerances.
 
-use rayon::prelude::*;
+use slipfit_system::parallel;
 
 use super::{
     AllocateError,
@@ -32,12 +32,11 @@ pub fn weights(
 
 fn of_differences(step: f64, at: &[f64], figures: &dyn Figures) -> Result<Vec<Vec<f64>>, AllocateError> {
     let moved: Vec<(usize, f64)> = (0..at.len()).flat_map(|item| [(item, 1.0 - step), (item, 1.0 + step)]).collect();
-    let values = moved.into_par_iter().map(|(item, factor)| {
+    let values = parallel::try_map(&moved, |(item, factor)| {
         let mut tolerances = at.to_vec();
-        tolerances[item] *= factor;
+        tolerances[*item] *= factor;
         figures.values(&tolerances)
-    });
-    let values = values.collect::<Result<Vec<_>, _>>()?;
+    })?;
     let powers = figures.powers();
     let weight = |row: usize, item: usize| {
         let [low, high] = [2 * item, 2 * item + 1].map(|point| values[point][row]);

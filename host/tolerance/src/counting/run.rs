@@ -201,15 +201,16 @@ pub fn run<W: Work>(
         let start = blocks.start + part.header.done;
         let end = (start + round).min(blocks.end);
         let added = work.add(start..end, &mut part.tallies, &done);
+        let asked = slipfit_system::interrupt::requested();
         if added.is_ok() {
             part.header.done = end - blocks.start;
-        } else if !slipfit_system::interrupt::requested() {
+        } else if !asked {
             added?;
         }
         if begin.elapsed() < LOOK_UP_EVERY {
             round *= 2;
         }
-        let stop = slipfit_system::interrupt::requested() && part.header.done < blocks.end - blocks.start;
+        let stop = asked && part.header.done < blocks.end - blocks.start;
         if let Some(Keep { out, .. }) = keep.filter(|_| stop || (saved.elapsed() >= due && end < blocks.end)) {
             save(&part, &checkpoint(out))?;
             (saved, due) = (Instant::now(), SAVE_EVERY);
