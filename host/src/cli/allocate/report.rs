@@ -34,7 +34,7 @@ pub struct Report {
     pub title: String,
     /// Of all tolerances.
     pub cost: f64,
-    /// No choice costs less, as far as the last linearisation goes.
+    /// No choice costs less, as far as the last linearisation goes; without one the cost of the widest tolerances.
     pub bound: f64,
     /// Cost of what the scene has now, where processes hold it.
     pub cost_before: Option<f64>,
@@ -263,7 +263,7 @@ impl Report {
                 .iter()
                 .cloned()
                 .chain(off_centre(&product.model, rows))
-                .chain(unproven(found))
+                .chain(unproven(rows, found))
                 .chain(out_of_reach)
                 .collect(),
         }
@@ -271,7 +271,11 @@ impl Report {
 }
 
 /// Why cheaper tolerances may exist.
-fn unproven(Found { solution, traded, .. }: &Found) -> Option<String> {
+fn unproven(rows: &[Row], Found { solution, traded, .. }: &Found) -> Option<String> {
+    // Among units that are counted nothing is proven.
+    if rows.iter().any(|row| matches!(row.requirement.kind, Kind::Malfunction { .. })) {
+        return None;
+    }
     if *traded {
         return Some(
             "a measure with kinks or much curvature: tolerances were traded against each other until no trade saved anything; others, \

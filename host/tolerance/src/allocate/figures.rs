@@ -28,7 +28,7 @@ pub struct Precision {
     pub still: f64,
     /// The most programs.
     pub programs: usize,
-    /// Whether tolerances are traded against each other where programs lead to no end.
+    /// Whether tolerances are traded against each other where programs lead to no end. If not, those of a program are widened alone.
     pub trades: bool,
 }
 

@@ -28,7 +28,7 @@ const CORRECTIONS: usize = 6;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// Processes, tolerances and cost; prices are what the cost falls by for every unit that a figure may rise by, all others
-    /// held. The bound is that of the last program.
+    /// held. The bound is that of the last program; where that has none, the cost of the widest tolerances.
     pub solution: Solution,
     /// The figures.
     pub figures: Vec<f64>,
@@ -122,6 +122,9 @@ pub fn search(processes: &[&[Process]], start: &[f64], figures: &dyn Figures) ->
         }
     }
     let (mut found, local) = best.ok_or(AllocateError::NotFound)?;
+    if !precision.trades {
+        found = widened(processes, found, figures)?;
+    }
     local.price(processes, &mut found, &figures.reliefs(), precision.slack);
     Ok(found)
 }
@@ -132,6 +135,22 @@ fn widens(processes: &[&[Process]], solution: Option<&Solution>, figures: &dyn F
     let met = vec![1.0; figures.reliefs().len()];
     let wider = exchanged(processes, tolerances, (figures, &met), Moves::Wider)?;
     Ok(wider.is_some_and(|(wider, _)| wider.cost < cost * (1.0 - WIDENS)))
+}
+
+/// What programs `found` of counted figures, wider where these allow it: slopes between few counts err, so that a program may hold a tolerance
+/// that matters little. For the same reason its bound is none; that without any requirement takes its place.
+fn widened(processes: &[&[Process]], found: Found, figures: &dyn Figures) -> Result<Found, AllocateError> {
+    let Found { solution, .. } = &found;
+    let met = vec![1.0; found.figures.len()];
+    let Some((wider, figures)) = exchanged(processes, &solution.tolerances, (figures, &met), Moves::Wider)? else {
+        return Ok(found);
+    };
+    let prices = solution.prices.clone();
+    if wider.cost < solution.cost * (1.0 - WIDENS) {
+        return Ok(Found { solution: Solution { prices, ..wider }, figures, ..found });
+    }
+    let solution = Solution { bound: wider.bound, ..found.solution };
+    Ok(Found { solution, ..found })
 }
 
 /// The cheapest of what trades find from each of `starts` on, all of which meet the figures; without prices.
