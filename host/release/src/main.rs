@@ -1,8 +1,8 @@
 //! The files of a release, by one command: `cargo artefacts FOLDER`.
 //!
-//! Wheels for Linux (x86-64 and aarch64) and Windows, the sources of the Python package, the program for Linux as an archive with manual
-//! pages and completions, a bill of materials, and SHA-256 sums of them all. Linkers for Linux come from PyPI; that for Windows is Debian's
-//! gcc-mingw-w64-x86-64.
+//! Wheels for Linux (x86-64 and aarch64, also for free-threaded Python) and Windows, the sources of the Python package, the program for
+//! Linux as an archive with manual pages and completions, a bill of materials, and SHA-256 sums of them all. Linkers for Linux come from
+//! PyPI; that for Windows is Debian's gcc-mingw-w64-x86-64.
 #![forbid(unsafe_code)]
 
 mod archive;
@@ -24,6 +24,16 @@ const LINUX: &[&str] = &["--zig", "--compatibility", "manylinux_2_17"];
 const WHEELS: [(&str, &[&str]); 3] =
     [("x86_64-unknown-linux-gnu", LINUX), ("aarch64-unknown-linux-gnu", LINUX), ("x86_64-pc-windows-gnu", &[])];
 
+/// Python without a global interpreter lock, as pyo3 reads it. It has no stable interface yet, so that a wheel serves one version.
+const FREE_THREADED: &str = "implementation=CPython
+version=3.14
+shared=true
+abi3=false
+pointer_width=64
+build_flags=Py_GIL_DISABLED
+suppress_build_script_link_lines=true
+";
+
 /// Builds the files of a release.
 #[derive(Parser)]
 #[command(name = "cargo artefacts")]
@@ -33,9 +43,6 @@ struct Arguments {
     /// Builds these alone.
     #[arg(long, value_delimiter = ',', default_values = ["wheels", "sources", "archive", "materials"])]
     only: Vec<Artefact>,
-    /// Python without a global interpreter lock, such as python3.14t, for which a wheel of its own is built.
-    #[arg(long, value_name = "PROGRAM")]
-    free_threaded: Option<PathBuf>,
 }
 
 /// What is built.
@@ -52,7 +59,7 @@ enum Artefact {
 }
 
 fn main() -> anyhow::Result<()> {
-    let Arguments { folder, only, free_threaded } = Arguments::parse();
+    let Arguments { folder, only } = Arguments::parse();
     if folder.exists() {
         anyhow::bail!("{} exists already; allowed is a folder that does not", folder.display());
     }
@@ -65,7 +72,7 @@ fn main() -> anyhow::Result<()> {
     let tools = Tools::install()?;
     for artefact in only {
         match artefact {
-            Artefact::Wheels => wheels(&tools, free_threaded.as_deref(), into)?,
+            Artefact::Wheels => wheels(&tools, into)?,
             Artefact::Sources => run(tools.maturin("sdist").arg("--out").arg(into))?,
             Artefact::Archive => archive::build(into)?,
             Artefact::Materials => materials(&tools, into)?,
@@ -77,8 +84,10 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A wheel for each system, which serves all versions of Python from 3.11 on.
-fn wheels(tools: &Tools, free_threaded: Option<&Path>, into: &Path) -> anyhow::Result<()> {
+/// A wheel for each system, which serves all versions of Python from 3.11 on; and for Linux those for Python without a global lock.
+fn wheels(tools: &Tools, into: &Path) -> anyhow::Result<()> {
+    let free_threaded = tempfile::NamedTempFile::new()?;
+    std::fs::write(&free_threaded, FREE_THREADED)?;
     let build = || {
         let mut build = tools.maturin("build");
         build.args(["--release", "--strip", "--locked", "--out"]).arg(into);
@@ -87,11 +96,13 @@ fn wheels(tools: &Tools, free_threaded: Option<&Path>, into: &Path) -> anyhow::R
     for (target, options) in WHEELS {
         run(std::process::Command::new("rustup").args(["target", "add", target]))?;
         run(build().args(options).args(["--target", target]))?;
+        if options == LINUX {
+            let mut build = build();
+            build.args(options).args(["--target", target, "--no-default-features"]);
+            run(build.env("PYO3_CONFIG_FILE", free_threaded.path()))?;
+        }
     }
-    match free_threaded {
-        Some(python) => run(build().args(LINUX).args(["--no-default-features", "--interpreter"]).arg(python)),
-        None => Ok(()),
-    }
+    Ok(())
 }
 
 /// Every crate that the program is made of, with its version, licence and checksum.
