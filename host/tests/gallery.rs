@@ -21,7 +21,7 @@ const INTRODUCTION: &str = "# Gallery
 Every scene that slipfit ships, with a question, a picture, and the program's answer. Take the scene that is nearest to your product
 and change it. The word behind the command is the scene's name; its file is `host/scenes/NAME.toml`.
 
-- Slides on pins: `cd-rom-slide`, `cd-rom-slide-fast`, `cd-rom-slide-drawing`, `slide-processes`.
+- Slides on pins: `drawer`, `cd-rom-slide`, `cd-rom-slide-fast`, `cd-rom-slide-drawing`, `slide-processes`.
 - Dimensions that add up: `three-part-stack`, `clutch`, `clutch-processes`, `shaft-housing`, `linear-chain`, `worn-tool`.
 - Parts with geometric tolerances: `three-locators`, `lid-on-pins`, `cd-rom-slide-drawing`.
 - Mechanisms in a plane: `slider-crank`, `slider-crank-guide`, `four-bar`, `woodpecker-toy`.

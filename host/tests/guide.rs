@@ -93,6 +93,19 @@ fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)
 }
 
+/// Appends a block of a file to it, or changes it as a `diff` says; other blocks belong to no file.
+fn write(folder: &Path, kind: &str, file: &str, block: &str) {
+    let path = folder.join(file);
+    match kind {
+        "toml" | "csv" if !file.is_empty() => {
+            let before = std::fs::read_to_string(&path).unwrap_or_default();
+            std::fs::write(path, before + block).unwrap();
+        }
+        "diff" if !file.is_empty() => edit(&path, block),
+        _ => {}
+    }
+}
+
 /// Does what the blocks of a page say, in a folder of its own; the outputs of its `sh` blocks. What is printed otherwise than a `console`
 /// block says is added to `wrong`.
 fn follow(page: &Path, wrong: &mut Vec<String>) -> String {
@@ -127,13 +140,7 @@ fn follow(page: &Path, wrong: &mut Vec<String>) -> String {
                     }
                 }
             }
-            ("toml" | "csv", file) if !file.is_empty() => {
-                let path = folder.path().join(file);
-                let before = std::fs::read_to_string(&path).unwrap_or_default();
-                std::fs::write(path, before + block).unwrap();
-            }
-            ("diff", file) if !file.is_empty() => edit(&folder.path().join(file), block),
-            _ => {}
+            (kind, file) => write(folder.path(), kind, file, block),
         }
     }
     outputs
@@ -159,4 +166,19 @@ fn wildcards_stand_for_what_they_say() {
     assert!(is_line("in [..] ms", "in 1.06 ms") && !is_line("in [..] ms", "in 1.06 s"));
     assert!(are_lines(&["a", "...", "c"], &["a", "b", "b", "c"]) && !are_lines(&["a", "...", "c"], &["a", "b"]));
     assert!(are_lines(&["a", "...", "c"], &["a", "c"]) && !are_lines(&["a", "c"], &["a", "b", "c"]));
+}
+
+#[test]
+fn the_shipped_drawer_is_that_of_the_tutorial() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("guide/src/tutorial.md");
+    for (fence, block) in blocks(&std::fs::read_to_string(page).unwrap()) {
+        let (kind, file) = fence.split_once(' ').unwrap_or((fence, ""));
+        write(folder.path(), kind, file, block);
+    }
+    let [made, shipped] = ["drawer.toml", "drawer"].map(|scene| {
+        let closer = "--set dimension.groove.tolerance=0.06";
+        printed(folder.path(), &format!("slipfit population {scene} --units 64 {closer} --json"))
+    });
+    assert!(made.1 && made == shipped, "{}", made.0);
 }

@@ -118,6 +118,8 @@ def test_work_without_a_result(here):
         pytest.skip("the system has no /dev/full")
     with pytest.raises(slipfit.WorkError, match="cannot write /dev/full"):
         slipfit.Scene(SLIDE).simulate(csv="/dev/full")
+    with pytest.raises(slipfit.WorkError, match="/dev/full: No space left"):
+        slipfit.Scene("cd-rom-slide-drawing").population(units=600, csv="/dev/full")
 
 
 def test_an_exception_of_the_progress_function_stops_the_work():

@@ -5,6 +5,7 @@ pub const CD_ROM_SLIDE: &str = include_str!("../../scenes/cd-rom-slide.toml");
 
 /// Names and texts of the shipped scenes.
 pub const SHIPPED: &[(&str, &str)] = &[
+    ("drawer", include_str!("../../scenes/drawer.toml")),
     ("cd-rom-slide", CD_ROM_SLIDE),
     ("cd-rom-slide-fast", include_str!("../../scenes/cd-rom-slide-fast.toml")),
     ("cd-rom-slide-drawing", include_str!("../../scenes/cd-rom-slide-drawing.toml")),

@@ -159,7 +159,7 @@ impl Columns {
     /// # Errors
     /// Those of the writer.
     pub fn write_names<W: Write>(&self, writer: &mut csv::Writer<W>) -> io::Result<()> {
-        Ok(writer.write_record(self.0.iter().map(|column| &column.name))?)
+        writer.write_record(self.0.iter().map(|column| &column.name)).map_err(of_system)
     }
 
     /// Writes the rows as lines of CSV.
@@ -169,9 +169,9 @@ impl Columns {
     pub fn write_rows<W: Write>(&self, writer: &mut csv::Writer<W>) -> io::Result<()> {
         for row in 0..self.rows() {
             for column in &self.0 {
-                writer.write_field(&*column.field(row))?;
+                writer.write_field(&*column.field(row)).map_err(of_system)?;
             }
-            writer.write_record(None::<&[u8]>)?;
+            writer.write_record(None::<&[u8]>).map_err(of_system)?;
         }
         Ok(())
     }
@@ -185,6 +185,14 @@ impl Columns {
         self.write_names(&mut writer)?;
         self.write_rows(&mut writer)?;
         Ok(writer.into_inner()?)
+    }
+}
+
+/// The system's own error of what writes CSV.
+fn of_system(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
     }
 }
 
