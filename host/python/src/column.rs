@@ -18,7 +18,7 @@ use pyo3::{
     exceptions::{PyBufferError, PyIndexError, PyValueError},
     ffi,
     prelude::*,
-    types::{PyBool, PyBytes, PyCapsule, PyInt, PyList, PySlice, PyString},
+    types::{PyBool, PyBytes, PyCapsule, PyInt, PyIterator, PyList, PySlice, PyString},
 };
 use slipfit::show::columns::{self, Values, Words};
 
@@ -151,7 +151,13 @@ fn values_of(values: &Bound<'_, PyAny>, kind: Option<&str>) -> PyResult<Values> 
     }
     Ok(match kind {
         FLAGS => Values::Flags(list.extract().map_err(wrong)?),
-        COUNTS => Values::Counts(list.extract().map_err(wrong)?),
+        COUNTS => {
+            let counts: Vec<u64> = list.extract().map_err(wrong)?;
+            if counts.iter().any(|count| i64::try_from(*count).is_err()) {
+                return Err(PyValueError::new_err("a column has a whole number beyond 2^63; allowed are smaller ones"));
+            }
+            Values::Counts(counts)
+        }
         WORDS => Values::Words(list.extract::<Vec<Option<String>>>().map_err(wrong)?.into_iter().collect()),
         NUMBERS => {
             let numbers: Vec<Option<f64>> = list.extract().map_err(wrong)?;
@@ -187,6 +193,10 @@ impl Column {
 
     fn __len__(&self) -> usize {
         self.array.len()
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        self.tolist(py)?.try_iter()
     }
 
     /// A value, or for a slice a list of them.

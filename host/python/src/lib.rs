@@ -173,7 +173,16 @@ fn commands() -> Vec<(String, String, Vec<Argument>)> {
         });
         let repeated = matches!(argument.get_action(), clap::ArgAction::Append);
         let name = argument.get_long().unwrap_or(argument.get_id().as_str());
-        let help = text(argument.get_long_help().or(argument.get_help()));
+        let mut help = text(argument.get_long_help().or(argument.get_help()));
+        let values: Vec<_> = argument.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
+        if !values.is_empty() && argument.get_action().takes_values() {
+            help = format!("{}. Allowed: {}", help.trim_end_matches('.'), values.join(", "));
+        }
+        if let [default] = argument.get_default_values()
+            && argument.get_action().takes_values()
+        {
+            help = format!("{}. If not given: {}", help.trim_end_matches('.'), default.to_string_lossy());
+        }
         (name.to_owned(), value, help, repeated, argument.is_positional())
     };
     let command = |command: &clap::Command| {

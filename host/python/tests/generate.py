@@ -155,10 +155,10 @@ def commands() -> str:
         "from __future__ import annotations",
         "",
         "from collections.abc import Mapping, Sequence",
-        "from typing import Any",
+        "from typing import Any, overload",
         "",
         "from slipfit import results",
-        "from slipfit._call import Files, Option, Table, call, path_of",
+        "from slipfit._call import Files, Option, Paths, Table, call, paths_of",
         "from slipfit._progress import Progress",
     ]
     of_scene, others = [], []
@@ -185,20 +185,26 @@ def function(name: str, about: str, options, of_scene: bool) -> list[str]:
     keywords = [one for one in arguments if not one[4]]
     kind = CLASSES.get(name, name.capitalize())
     result = "results.Population | results.Tolerance" if name == "merge" else f"results.{kind}"
-    # Type checkers are not asked which of them it is: the other fields are an AttributeError.
-    kinds = f"{result} | results.Shard" if "shard" in [option for option, *_ in keywords] else result
+    whole = result
+    if shards := "shard" in [option for option, *_ in keywords]:
+        result += " | results.Shard"
     column = COLUMNS.get(name)
     has_picture = any(option in ("plot", "plots") for option, *_ in keywords)
     asked = column is not None and name not in ("simulate", "sweep")
     shown = [one for one in keywords if not is_column(column, asked, one[0])]
     signature = ["self"] if of_scene else []
-    signature += [f"{python_name(option)}: {'Sequence[Table]' if many else 'Table'}" for option, _, _, many, _ in places]
+    signature += [f"{python_name(option)}: {'Paths' if many else 'Table'}" for option, _, _, many, _ in places]
     signature.append("*")
     signature += [f"{python_name(option)}: {option_type(value)}" for option, value, *_ in shown]
     signature += [f"{column[0]}: bool = False"] if asked else []
     signature += ["picture: bool | None = None"] if has_picture else []
     signature.append("progress: Progress = None")
-    lines = ["", *([] if of_scene else [""]), f"{indent}def {name}("]
+    lines = ["", *([] if of_scene else [""])]
+    for shard, returned in [("None = None", whole), ("str", result)] if shards else []:
+        overloaded = [f"shard: {shard}" if one.startswith("shard: ") else one for one in signature]
+        lines += [f"{indent}@overload", f"{indent}def {name}("]
+        lines += [f"{indent}    {one}," for one in overloaded] + [f"{indent}) -> {returned}: ..."]
+    lines.append(f"{indent}def {name}(")
     lines += [f"{indent}    {one}," for one in signature] + [f"{indent}) -> {result}:"]
     lines += docstring(about, [*places, *shown], column if asked else None, has_picture, of_scene, indent + "    ")
     passed = ", ".join(f'"{option.replace("-", "_")}": {python_name(option)}' for option, *_ in shown)
@@ -210,9 +216,9 @@ def function(name: str, about: str, options, of_scene: bool) -> list[str]:
     inner = indent + "    "
     lines.append(f"{inner}options: dict[str, Option] = {{{passed}}}")
     if of_scene:
-        lines.append(f'{inner}found: {result} = self._call({kinds}, "{name}", options, {", ".join(wanted)})')
+        lines.append(f'{inner}found: {result} = self._call({result}, "{name}", options, {", ".join(wanted)})')
     elif places and places[0][3]:
-        lines.append(f"{inner}paths = [path_of(path) for path in {python_name(places[0][0])}]")
+        lines.append(f"{inner}paths = paths_of({python_name(places[0][0])})")
         lines.append(f'{inner}found: {result} = call({result}, "{name}", paths, options, {", ".join(wanted)})')
     else:
         lines.append(f"{inner}with Files() as files:")
@@ -237,6 +243,7 @@ def option_type(value: str | None) -> str:
 
 def keyword_of(text: str) -> str:
     """Help of the command line, in which options are keywords and repeated ones lists."""
+    text = re.sub(r"`(\w+) --([a-z]+(?:-[a-z]+)*)`", lambda option: f"`{option[1]}` with `{option[2].replace('-', '_')}`", text)
     text = re.sub(r"`?--([a-z]+(?:-[a-z]+)*)`?", lambda option: f"`{option[1].replace('-', '_')}`", text)
     return text.replace("; may be repeated", "; or a list of them")
 

@@ -104,6 +104,8 @@ def test_kinds_of_columns():
         empty = slipfit.Column([], kind=kind)
         assert pickle.loads(pickle.dumps(empty)).kind == kind and pickle.loads(pickle.dumps(column)) == column
     assert slipfit.Column(np.array([1, 2])).kind == "counts" and slipfit.Column([]).kind == slipfit.Column([1, -2]).kind == "numbers"
+    with pytest.raises(ValueError, match="beyond"):
+        slipfit.Column([2**63])
     for values in ([1.0, "a"], [True, 2], [True, 1.5], "words", b"12", 3, [[1.0]], [1, "a"]):
         with pytest.raises(ValueError, match="one kind"):
             slipfit.Column(values)

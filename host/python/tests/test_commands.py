@@ -168,7 +168,7 @@ def test_watch_serves_a_page_until_it_is_stopped(here):
         urllib.request.urlopen(page.address)
     with pytest.raises(slipfit.InputError, match="cannot read the scene nowhere"):
         slipfit.Scene("nowhere").watch()
-    with pytest.raises(slipfit.InputError, match="a text"):
+    with pytest.raises(slipfit.InputError, match="only a file"):
         slipfit.Scene.from_text("").watch()
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas
+import pyarrow
 import pytest
 
 import slipfit
@@ -19,6 +20,12 @@ def closed():
     file = open(__file__)
     file.close()
     return file
+
+
+def in_itself():
+    endless = []
+    endless.append(endless)
+    return endless
 
 
 VALUES = [[1, 2], {1: 2}, math.nan, math.inf, "a", b"a", object(), [1.0, 2.0], [math.nan] * 16, {}, "1;2", "\0", (None,), 1j, closed(), np.zeros((2, 2))]
@@ -74,6 +81,30 @@ OTHERS = {
     "names of several levels": lambda: slipfit.capability(pandas.DataFrame({("a", "b"): [1.0]})),
     "columns that differ in length": lambda: slipfit.capability({"a": [1.0], "b": [1.0, 2.0]}),
     "plot without columns": lambda: slipfit.Scene(SLIDE).check().plot(),
+    "two columns of one name": lambda: slipfit.capability(pandas.DataFrame(np.ones((40, 2)), columns=["a (mm)", "a (mm)"])),
+    "two columns of one name in Arrow": lambda: slipfit.capability(pyarrow.table([pyarrow.array([1.0] * 40)] * 2, names=["a", "a"])),
+    "two columns of one name, one a number": lambda: slipfit.capability({1: [1.0] * 40, "1": [1.0] * 40}),
+    "durations as times": lambda: slipfit.Scene.from_text('[identify]\nmodel = "drive-train"\n').identify(
+        {"t (s)": np.arange(100).astype("timedelta64[ns]"), "force (N)": np.ones(100), "speed (m/s)": np.ones(100)}
+    ),
+    "no levels": lambda: slipfit.Scene(SLIDE).simulate(n=[]),
+    "levels that a filter has left": lambda: slipfit.Scene(SLIDE).simulate(n=np.array([])),
+    "a flag as a level": lambda: slipfit.Scene(SLIDE).simulate(n=False),
+    "a flag as a seed": lambda: slipfit.Scene(SLIDE).population(seed=True),
+    "a number as a flag": lambda: slipfit.Scene(SLIDE).simulate(stroke=2),
+    "more digits than Python prints": lambda: slipfit.Scene(SLIDE).simulate(n=10**5000),
+    "more digits than Python prints, as an override": lambda: slipfit.Scene(SLIDE, {"slide.mass": 10**5000}).check(),
+    "a list in itself": lambda: slipfit.Scene(SLIDE, {"slide.gravity": in_itself()}).check(),
+    "half a character as a name": lambda: slipfit.capability({"a\udc80": [1.0, 2.0]}),
+    "nothing to merge": lambda: slipfit.merge(None),
+    "a number to merge": lambda: slipfit.merge(5),
+    "a column that is not there": lambda: slipfit.Scene(SLIDE).simulate().plot("colour"),
+    "too many random points": lambda: slipfit.Scene(SLIDE).precision(stability=True, random=10**9),
+    "parts with columns in memory": lambda: slipfit.Scene("clutch", {"measured": {"file": {"a": [1.0]}, "column": [{"of": "hub"}]}}).tolerance(
+        shard="1/2", out="part"
+    ),
+    "a page of a shipped scene": lambda: slipfit.Scene(SLIDE).watch(),
+    "a port that is none": lambda: slipfit.Scene(__file__).watch(port="x"),
     "an ending": lambda: slipfit.Scene(SLIDE).kernel(output="kernel.png"),
     "0 threads": lambda: slipfit.Scene(SLIDE).population(threads=0),
     "1.5 units": lambda: slipfit.Scene(SLIDE).population(units=1.5),
@@ -132,6 +163,11 @@ def test_an_exception_of_the_progress_function_stops_the_work():
     with pytest.raises(Enough):
         slipfit.Scene("cd-rom-slide-drawing").population(units=1_000_000, progress=tell)
     assert slipfit.Scene(SLIDE).check().n == 0.0
+
+
+def test_what_does_not_fit_into_memory():
+    with pytest.raises(slipfit.WorkError, match="do not fit into memory"):
+        slipfit.Scene("cd-rom-slide-drawing").tolerance(samples=10**12, draws=True)
 
 
 def test_bad_calls_from_many_threads():
@@ -202,6 +238,8 @@ def test_messages_speak_of_keywords_and_columns():
     with pytest.raises(slipfit.InputError, match="invalid float") as caught:
         slipfit.Scene(SLIDE).check(n="x")
     assert str(caught.value).startswith("invalid value 'x' for 'n <") and "For more" not in str(caught.value)
+    with pytest.raises(slipfit.InputError, match="^cannot read p: "):
+        slipfit.merge("p")
     with pytest.raises(slipfit.SceneError) as caught:
         slipfit.Scene("clutch", {"measured": {"file": {"a": [1.0]}, "column": [{"of": "b"}]}}).check()
     assert all("/" not in problem.message for problem in caught.value.problems) and "/" not in str(caught.value)

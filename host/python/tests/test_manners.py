@@ -49,7 +49,7 @@ def test_results_can_be_compared_pickled_and_copied():
         assert again == result and type(again) is type(result) and again.columns == result.columns
         assert again.verdict == result.verdict
     assert result != slipfit.Scene(SLIDE).simulate(n=1.0)
-    with pytest.raises(AttributeError, match="cannot be changed"):
+    with pytest.raises(AttributeError, match="cannot be set"):
         result.verdict = "runs"
 
 
@@ -59,6 +59,9 @@ def test_overrides_have_units_and_lists():
         command_line("simulate", SLIDE, "--set", 'slide.mass="90 g"', "--set", "slide.gravity=[0,-9.81,0]", "--json")
     )
     assert scene.simulate().peak_force == expected["peak_force"]
+    friction = {"law": "regularised", "coefficient": 0.1, "stick_band": 0.1}
+    set_again = scene.with_overrides({"friction.coefficient": 0.2, "friction": friction}).with_overrides({"friction.coefficient": 0.3})
+    assert set_again.simulate().columns == scene.with_overrides({"friction": {**friction, "coefficient": 0.3}}).simulate().columns
     assert scene.with_overrides({"slide.mass": 50.0}).simulate().peak_force != expected["peak_force"]
 
 
@@ -174,6 +177,56 @@ def test_plots_with_matplotlib():
         slipfit.Scene("clutch").tolerance(samples=500).plot()
 
 
+def test_a_standard_error_that_is_closed_or_only_writes(monkeypatch):
+    class Writes:
+        def write(self, text):
+            raise OSError("full")
+
+    closed = io.StringIO()
+    closed.close()
+    for stream in (None, closed, Writes()):
+        monkeypatch.setattr(sys, "stderr", stream)
+        for progress in (None, True):
+            assert slipfit.Scene(SLIDE).check(progress=progress).n == 0.0
+
+
+def test_the_modules_own_example():
+    import doctest
+
+    assert doctest.testmod(slipfit).failed == 0
+
+
+def test_ctrl_c_ends_a_compiler():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    threading.Timer(1.0, signal.raise_signal, [signal.SIGINT]).start()
+    started = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        slipfit.Scene(SLIDE).fmu(output="never.fmu")
+    signal.signal(signal.SIGINT, before)
+    assert time.monotonic() - started < 5 and not Path("never.fmu").exists()
+
+
+def test_scripts_that_type_checkers_see(tmp_path):
+    """What works passes mypy, and what does not is an error."""
+    good = """
+import numpy as np
+import slipfit
+scene = slipfit.Scene("cd-rom-slide")
+column: slipfit.Column = scene.simulate(n=np.ones(16)).columns["force"]
+most = max(column)
+share: float = scene.population(units=np.int64(3)).statistics.malfunctions.share
+part = scene.tolerance(shard="1/2", out="part")
+name: str = part.file if isinstance(part, slipfit.results.Shard) else ""
+again = slipfit.Column(np.ones(3))
+"""
+    bad = good + "scene.check().titel\nscene.tolerance(shard='1/2').measures\nscene.simulate(level=1)\n"
+    for text, wrong in ((good, 0), (bad, 3)):
+        (tmp_path / "script.py").write_text(text, "utf-8")
+        words = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), str(tmp_path / "script.py")]
+        done = subprocess.run(words, capture_output=True, encoding="utf-8")
+        assert done.stdout.count(": error:") == wrong, done.stdout + done.stderr
+
+
 def test_exit_codes_of_the_command_line():
     def code(*arguments):
         return subprocess.run([sys.executable, "-m", "slipfit", *arguments], capture_output=True).returncode
@@ -222,6 +275,10 @@ def test_a_data_frame_has_its_index_and_other_columns():
     frame["good"] = True
     expected = slipfit.capability(frame, label="part", ignore=["good"])
     assert slipfit.capability(frame.set_index("part"), label="part", ignore=["good"]) == expected
+    frame["time"] = pandas.date_range("2026-01-01", periods=30, tz="UTC")
+    assert slipfit.capability(frame, label="part", ignore=["good", "time"]).characteristics == expected.characteristics
+    with pytest.raises(slipfit.InputError, match="two columns"):
+        slipfit.capability(frame.set_index(frame["part"]), label="part")
 
 
 def test_cells_of_data_frames():

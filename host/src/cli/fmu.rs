@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use maud::{DOCTYPE, Markup, html};
 use serde::Serialize;
-use slipfit_system::{files, interrupt};
+use slipfit_system::files;
 
 use super::{
     arguments::{Moving, SceneArguments},
@@ -110,9 +110,6 @@ impl Arguments {
         bar.enable_steady_tick(std::time::Duration::from_millis(250));
         let library = compile(&unit, &sources, |line| bar.set_message(line.to_owned()));
         bar.finish_and_clear();
-        if interrupt::requested() {
-            return Err(Failure::Work(anyhow::anyhow!("interrupted")));
-        }
         let entries = self.entries(&unit, fmi, library?)?;
         files::write(&self.output, &archive(&entries).map_err(anyhow::Error::from)?)?;
         self.report(&unit, fmi)

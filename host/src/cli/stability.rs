@@ -28,8 +28,8 @@ pub(super) struct MapArguments {
     #[arg(long)]
     pub stability: bool,
     /// Number of random combinations in the stability map.
-    #[arg(long, default_value_t = 1000, requires = "stability")]
-    random: usize,
+    #[arg(long, default_value_t = 1000, requires = "stability", value_parser = clap::value_parser!(u32).range(..=1_000_000))]
+    random: u32,
     /// Seed of the random combinations.
     #[arg(long, default_value_t = 1, requires = "stability")]
     seed: u64,
@@ -49,10 +49,10 @@ struct Report {
 impl MapArguments {
     /// Makes the map of `scene` and writes and prints it.
     pub fn run(&self, scene: &Scene, json: bool, csv: Option<&Path>, plot: Option<&Path>) -> Result<(), Failure> {
-        let bar = progress("simulating", stability::one_at_a_time_count() + self.random);
+        let bar = progress("simulating", stability::one_at_a_time_count() + self.random as usize);
         let (single, random) = self.threads.install(|| {
             let single = stability::one_at_a_time(scene, || bar.inc(1));
-            (single, stability::random(scene, self.seed, self.random, || bar.inc(1)))
+            (single, stability::random(scene, self.seed, self.random as usize, || bar.inc(1)))
         })?;
         let (single, random) = (single?, random?);
         bar.finish_and_clear();

@@ -142,6 +142,17 @@ impl Columns {
         }
     }
 
+    /// Whether memory has space for so many `rows` of `count` columns, before it is filled for hours.
+    ///
+    /// # Errors
+    /// If it has not.
+    pub fn check_space(rows: u64, count: usize) -> anyhow::Result<()> {
+        let numbers = usize::try_from(rows).ok().and_then(|rows| rows.checked_mul(count));
+        let has = numbers.is_some_and(|numbers| Vec::<f64>::new().try_reserve_exact(numbers).is_ok());
+        anyhow::ensure!(has, "{rows} rows of {count} columns do not fit into memory");
+        Ok(())
+    }
+
     /// Has space for `rows` more rows.
     pub fn reserve(&mut self, rows: usize) {
         for column in &mut self.0 {

@@ -2,8 +2,11 @@
 
 >>> import slipfit
 >>> scene = slipfit.Scene("cd-rom-slide")
->>> scene.simulate(n=2.5).verdict
+>>> scene.simulate(n=2.5, stroke=True).verdict
 'runs'
+
+Functions that take long have the keyword ``progress``: a function that is called with what is done, how much, and of how much; or whether a
+line on standard error shows it. Without it a line is shown where standard error is a terminal.
 """
 
 from slipfit import results

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import decimal
 import functools
@@ -9,17 +10,16 @@ import json
 import os
 import re
 import reprlib
-import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Protocol, Union
+from typing import Any, NamedTuple, Protocol, Union
 
 from slipfit import _slipfit
 from slipfit._errors import InputError, SlipfitError, reword
 from slipfit._progress import Progress, line
-from slipfit._result import result
+from slipfit._result import in_notebook, result
 from slipfit._slipfit import Columns
 
 
@@ -33,17 +33,32 @@ class Frame(Protocol):
     def __getitem__(self, name: Any, /) -> Any: ...
 
 
-#: A value of an option: text, number, path, or a list of them. True sets an option that has no value. None leaves an option out.
-Option = Union[str, int, float, bool, "os.PathLike[str]", Sequence[Any], None]
+class Listed(Protocol):
+    """An array or a number of numpy."""
+
+    def tolist(self) -> Any: ...
+
+
+#: A value of an option: text, number, path, or a list or an array of them, not empty. None leaves an option out.
+Option = Union[str, int, float, "os.PathLike[str]", Sequence[Any], Listed, None]
+#: One file or several.
+Paths = Union[str, "os.PathLike[str]", Sequence[Union[str, "os.PathLike[str]"]]]
 #: A file, or what it would hold: names of columns and their values, as a dict, a data frame or :class:`Columns`.
 Table = Union[str, "os.PathLike[str]", Mapping[str, Any], Columns, Frame]
 
 
+class Kind(NamedTuple):
+    """What an option takes."""
+
+    has_value: bool
+    is_repeated: bool
+
+
 @functools.cache
-def options_of(command: str) -> dict[str, bool]:
-    """The options of a command, and whether they may be repeated."""
+def options_of(command: str) -> dict[str, Kind]:
+    """The options of a command."""
     options = next((options for name, _, options in _slipfit.commands() if name == command), [])
-    return {name: repeated for name, _, _, repeated, is_place in options if not is_place}
+    return {name: Kind(value is not None, repeated) for name, value, _, repeated, is_place in options if not is_place}
 
 
 def words(command: str, options: Mapping[str, Option]) -> list[str]:
@@ -51,16 +66,18 @@ def words(command: str, options: Mapping[str, Option]) -> list[str]:
     all_words: list[str] = []
     for name, value in options.items():
         option = name.rstrip("_").replace("_", "-")
-        value = plain(value)
-        if value is None or value is False or (isinstance(value, (list, tuple)) and not value):
+        value, kind = plain(value), options_of(command)[option]
+        if value is None:
             continue
-        if value is True:
-            all_words.append(f"--{option}")
-        elif isinstance(value, (list, tuple)):
-            parts = [_word(one) for one in value]
-            all_words += [f"--{option}={part}" for part in (parts if options_of(command)[option] else [",".join(parts)])]
+        if not kind.has_value:
+            if not isinstance(value, bool):
+                raise InputError(f"{name} is {_shown(value)}, allowed is True or False")
+            all_words += [f"--{option}"] if value else []
+        elif isinstance(value, (list, tuple)) and value:
+            parts = [_word(name, one) for one in value]
+            all_words += [f"--{option}={part}" for part in (parts if kind.is_repeated else [",".join(parts)])]
         else:
-            all_words.append(f"--{option}={_word(value)}")
+            all_words.append(f"--{option}={_word(name, value)}")
     return all_words
 
 
@@ -69,23 +86,42 @@ def plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
-def _word(value: object) -> str:
+def _shown(value: object) -> str:
+    """A value in a message."""
+    try:
+        return reprlib.repr(value)
+    # Of very long numbers.
+    except ValueError:
+        return f"a {type(value).__name__}"
+
+
+def _word(name: str, value: object) -> str:
     value = plain(value)
     if isinstance(value, float):
         # 1e2 units are 100.
         return str(int(value)) if value.is_integer() and abs(value) < 2**53 else float.__repr__(value)
     if isinstance(value, (str, int)) and not isinstance(value, bool):
-        return str(value)
+        with contextlib.suppress(ValueError):
+            return str(value)
     if isinstance(value, os.PathLike):
         return path_of(value)
-    raise InputError(f"an option is {reprlib.repr(value)}, allowed are texts, numbers, paths, and lists of them")
+    raise InputError(f"{name} is {_shown(value)}, allowed are texts, numbers, paths, lists of them that are not empty, and None")
 
 
 def path_of(path: object) -> str:
     """A path as text."""
     if not isinstance(path, (str, os.PathLike)) or not isinstance(text := os.fspath(path), str):
-        raise InputError(f"a path is {reprlib.repr(path)}, allowed are texts and pathlib's paths")
+        raise InputError(f"a path is {_shown(path)}, allowed are texts and pathlib's paths")
     return text
+
+
+def paths_of(paths: object) -> list[str]:
+    """Paths as texts."""
+    if isinstance(paths, (str, os.PathLike)):
+        return [path_of(paths)]
+    if isinstance(paths, (list, tuple)):
+        return [path_of(path) for path in paths]
+    raise InputError(f"paths are {_shown(paths)}, allowed are texts, pathlib's paths, and lists of them")
 
 
 def is_table(value: object) -> bool:
@@ -98,7 +134,8 @@ class Files:
 
     def __init__(self) -> None:
         self._folder: tempfile.TemporaryDirectory[str] | None = None
-        self._count = 0
+        #: How many there are.
+        self.count = 0
 
     def __enter__(self) -> Files:
         return self
@@ -119,47 +156,57 @@ class Files:
             return path_of(table)
         if self._folder is None:
             self._folder = tempfile.TemporaryDirectory(prefix="slipfit-")
-        self._count += 1
-        path = Path(self._folder.name, f"columns-{self._count}.csv")
+        self.count += 1
+        path = Path(self._folder.name, f"columns-{self.count}.csv")
         _write(path, table)
         return str(path)
 
 
 def _write(path: Path, table: Any) -> None:
     """Writes columns as CSV; the index of a data frame, if it has a name."""
-    if any(name is not None for name in getattr(getattr(table, "index", None), "names", ())):
-        table = table.reset_index()
-    if hasattr(table, "to_pydict"):
+    names: list[str] = []
+    columns: list[Sequence[Any]] = []
+    for name, values in _items(table):
+        names.append(_name(name))
+        columns.append(_values(names[-1], values))
+        if names.count(names[-1]) > 1:
+            raise InputError(f"there are two columns {names[-1]!r}; each needs a name that no other has")
+        if len(columns[-1]) != len(columns[0]):
+            raise InputError(f"the column {names[-1]!r} has {len(columns[-1])} values, the first column has {len(columns[0])}")
+    cells = [[_cell(name, one) for name, one in zip(names, row)] for row in zip(*columns)]
+    with path.open("w", encoding="utf-8", errors="surrogatepass", newline="") as file:
+        csv.writer(file).writerows([names, *cells])
+
+
+def _items(table: Any) -> Iterable[tuple[Any, Any]]:
+    """Names and columns."""
+    if hasattr(table, "column_names"):
         # pyarrow's tables.
-        table = table.to_pydict()
-    # polars' data frames have no items.
-    items = table.items() if hasattr(table, "items") else ((name, table[name]) for name in table.columns)
-    columns = {_name(name): _values(name, values) for name, values in items}
-    first = len(next(iter(columns.values()), ()))
-    for name, values in columns.items():
-        if len(values) != first:
-            raise InputError(f"the column {name!r} has {len(values)} values, the first column has {first}")
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        writer.writerows([[_cell(name, one) for name, one in zip(columns, row)] for row in zip(*columns.values())])
+        return zip(table.column_names, table.columns)
+    if hasattr(table, "items"):
+        index: Any = getattr(table, "index", None)
+        # pandas: with the index, if it has a name.
+        named = [(name, index.get_level_values(k)) for k, name in enumerate(getattr(index, "names", ())) if name is not None]
+        return [*named, *table.items()]
+    # polars' data frames.
+    return ((name, table[name]) for name in table.columns)
 
 
 def _name(name: object) -> str:
-    if isinstance(name, (str, int)):
-        return str(name)
-    raise InputError(f"the name of a column is {reprlib.repr(name)}, allowed are texts and whole numbers")
+    if isinstance(name, (str, int)) and (text := str(name)).isprintable():
+        return text
+    raise InputError(f"the name of a column is {_shown(name)}, allowed are texts and whole numbers")
 
 
 def _values(name: object, values: Any) -> Sequence[Any]:
     """The values of a column."""
-    if getattr(getattr(values, "dtype", None), "kind", "") == "M" and hasattr(values, "astype"):
-        # As lists, numpy's nanoseconds are whole numbers.
-        values = values.astype("datetime64[us]")
+    if type(values).__module__ == "numpy" and values.dtype.kind in ("M", "m"):
+        # As a list, numpy's nanoseconds are whole numbers.
+        values = values.astype(values.dtype.kind + "8[us]")
     values = plain(values)
-    values = values.to_list() if hasattr(values, "to_list") else values
+    values = next((getattr(values, of)() for of in ("to_list", "to_pylist") if hasattr(values, of)), values)
     if isinstance(values, (str, bytes)) or not isinstance(values, Sequence):
-        raise InputError(f"the column {name!r} is {reprlib.repr(values)}, allowed is a list or an array with one dimension")
+        raise InputError(f"the column {name!r} is {_shown(values)}, allowed is a list or an array with one dimension")
     return values
 
 
@@ -174,13 +221,7 @@ def _cell(name: str, value: Any) -> str:
         return str(value)
     if hasattr(value, "isoformat"):
         return str(value.isoformat())
-    raise InputError(f"the column {name!r} has the value {reprlib.repr(value)}, allowed are numbers, texts and times")
-
-
-def in_notebook() -> bool:
-    """Whether results are shown in a notebook."""
-    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
-    return shell is not None and hasattr(shell, "kernel")
+    raise InputError(f"the column {name!r} has the value {_shown(value)}, allowed are numbers, texts and times")
 
 
 def call(
@@ -212,6 +253,12 @@ def call(
     return result(kind, fields, dict(drawings))
 
 
+def spoken(text: str, command: str) -> str:
+    """A message of the command line, whose options are keywords here."""
+    names = "|".join(options_of(command))
+    return re.sub(rf"(?<![\w./\\-])--({names})(?![\w-])", lambda option: option[1].replace("-", "_"), text)
+
+
 def run(
     arguments: Sequence[str],
     scene: str | None = None,
@@ -230,8 +277,7 @@ def run(
     except UnicodeEncodeError as error:
         raise InputError(f"a text is not Unicode: {error}") from None
     except SlipfitError as error:
-        names = "|".join(options_of(arguments[0]))
-        reword(error, lambda text: re.sub(rf"(?<![\w./\\-])--({names})(?![\w-])", lambda option: option[1].replace("-", "_"), text))
+        reword(error, lambda text: spoken(text, arguments[0]))
         raise
     finally:
         if shown is not None:

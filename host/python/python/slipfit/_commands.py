@@ -10,10 +10,10 @@ picture: whether the result has the pictures of ``plot`` in ``pictures``. Withou
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, overload
 
 from slipfit import results
-from slipfit._call import Files, Option, Table, call, path_of
+from slipfit._call import Files, Option, Paths, Table, call, paths_of
 from slipfit._progress import Progress
 
 
@@ -77,7 +77,7 @@ class SceneCommands:
         the exit code.
 
         Args:
-            n: Tolerance level at which the gaps are shown; positive is tighter.
+            n: Tolerance level at which the gaps are shown; positive is tighter. If not given: 0.
             plot: Draws a mechanism with its joints and gaps as SVG; not for slides.
             picture: Whether the result has pictures; if None, in notebooks.
             progress: A function, or whether a line on standard error says how far it is.
@@ -91,6 +91,44 @@ class SceneCommands:
         found: results.Check = self._call(results.Check, "check", options, picture=picture, progress=progress)
         return found
 
+    @overload
+    def tolerance(
+        self,
+        *,
+        samples: Option = None,
+        method: Option = None,
+        replicates: Option = None,
+        seed: Option = None,
+        threads: Option = None,
+        shard: None = None,
+        out: Option = None,
+        resume: bool = False,
+        n: Option = None,
+        csv: Option = None,
+        plots: Option = None,
+        draws: bool = False,
+        picture: bool | None = None,
+        progress: Progress = None,
+    ) -> results.Tolerance: ...
+    @overload
+    def tolerance(
+        self,
+        *,
+        samples: Option = None,
+        method: Option = None,
+        replicates: Option = None,
+        seed: Option = None,
+        threads: Option = None,
+        shard: str,
+        out: Option = None,
+        resume: bool = False,
+        n: Option = None,
+        csv: Option = None,
+        plots: Option = None,
+        draws: bool = False,
+        picture: bool | None = None,
+        progress: Progress = None,
+    ) -> results.Tolerance | results.Shard: ...
     def tolerance(
         self,
         *,
@@ -108,7 +146,7 @@ class SceneCommands:
         draws: bool = False,
         picture: bool | None = None,
         progress: Progress = None,
-    ) -> results.Tolerance:
+    ) -> results.Tolerance | results.Shard:
         """Shows how measures vary: Monte Carlo, worst case, RSS, contributors, capability.
 
         For scenes with a product. Where the scene has a slide as well, the output ends with the clearances of its
@@ -116,7 +154,7 @@ class SceneCommands:
 
         Args:
             samples: Units to draw, in each replicate; if not given 5000.
-            method: How units are drawn.
+            method: How units are drawn. Allowed: mc, lhs, sobol, factorial, taguchi, taguchi3. If not given: mc.
             replicates: Independent repetitions, 1 to 1024; if not given 8 for lhs and sobol, 1 for mc. Standard
                 errors follow from their spread.
             seed: Seed of the production; if not given 1. The same scene, seed and number give the same unit on every
@@ -140,7 +178,7 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"samples": samples, "method": method, "replicates": replicates, "seed": seed, "threads": threads, "shard": shard, "out": out, "resume": resume, "n": n, "csv": csv, "plots": plots}
-        found: results.Tolerance = self._call(results.Tolerance | results.Shard, "tolerance", options, draws=draws, picture=picture, progress=progress)
+        found: results.Tolerance | results.Shard = self._call(results.Tolerance | results.Shard, "tolerance", options, draws=draws, picture=picture, progress=progress)
         return found
 
     def allocate(
@@ -174,9 +212,9 @@ class SceneCommands:
                 with `require` malfunction=SHARE`.
             units: Units to simulate for every set of tolerances that is tried. Only for requirements on malfunction.
                 The tolerances found are confirmed with eight times as many other units, or more if the share is
-                small. More units find cheaper tolerances and take longer.
-            samples: Units to draw for the check of the tolerances found.
-            seed: Seed of the production.
+                small. More units find cheaper tolerances and take longer. If not given: 2048.
+            samples: Units to draw for the check of the tolerances found. If not given: 1000000.
+            seed: Seed of the production. If not given: 1.
             threads: Number of threads; all cores if not given. The result does not depend on it.
             write: Writes the scene with the tolerances found.
             csv: Writes the curve of cost against defects as CSV. A row has a number of defects, 10,000 to 1 ppm, the
@@ -228,19 +266,20 @@ class SceneCommands:
             n: Tolerance level, for all gaps or one for each; positive is tighter. One for each gap is a list with
                 commas. A slide takes sixteen levels: left, right, rail and wall of each of four pins, whether the
                 scene has that gap or not. A mechanism takes them in the order in which `slipfit check` lists its
-                gaps.
+                gaps. If not given: 0.
             unit: Number of a unit of the production, instead of a tolerance level. The units are those of `slipfit
                 population`, which runs the whole stroke: add `stroke` for the same run.
-            seed: Seed of the production, for `unit`.
+            seed: Seed of the production, for `unit`. If not given: 1.
             correlation: Correlation between the gaps, for `unit`. It holds for any two gaps that the scene states by
-                mean and standard deviation.
+                mean and standard deviation. If not given: 0.
             csv: Writes the run as CSV, in SI units. Of a slide the columns are time, speed and force along the drive,
                 displacement of the centre of mass. Of a mechanism they are time, the force of each drive, and the
                 motion of each body. Their heads have units.
             plot: Draws speed and force over time as SVG.
             page: Writes a page with the run and an animation of the bodies on their joints, gaps enlarged, by the
                 desk's run.
-            every: Interval between the samples in the output, such as 1ms or 500us; a bare number is in ms.
+            every: Interval between the samples in the output, such as 1ms or 500us; a bare number is in ms. If not
+                given: 1ms.
             audit: Prints the energy balance of the controller's run. Work of the drive = gains + losses + defect. The
                 defect is the error of the integration scheme: positive where the scheme lost energy, negative where
                 it added some.
@@ -249,8 +288,9 @@ class SceneCommands:
                 share of the drive's greatest force, of a mechanism a share of its own speed. Smaller is more exact
                 and slower.
             step: Length of the controller's steps, such as 1ms; a bare number is in µs.
-            integrator: Integration scheme of the controller.
-            scalar: Number type of the controller.
+            integrator: Integration scheme of the controller. Allowed: semi-implicit-euler, rk4, linearly-implicit-
+                euler, rodas3, implicit-euler, rodas4, sdirk2, extrapolated.
+            scalar: Number type of the controller. Allowed: f32, f64.
             picture: Whether the result has pictures; if None, in notebooks.
             progress: A function, or whether a line on standard error says how far it is.
 
@@ -308,8 +348,9 @@ class SceneCommands:
                 share of the drive's greatest force, of a mechanism a share of its own speed. Smaller is more exact
                 and slower.
             step: Length of the controller's steps, such as 1ms; a bare number is in µs.
-            integrator: Integration scheme of the controller.
-            scalar: Number type of the controller.
+            integrator: Integration scheme of the controller. Allowed: semi-implicit-euler, rk4, linearly-implicit-
+                euler, rodas3, implicit-euler, rodas4, sdirk2, extrapolated.
+            scalar: Number type of the controller. Allowed: f32, f64.
             threads: Number of threads; all cores if not given. The result does not depend on it.
             picture: Whether the result has pictures; if None, in notebooks.
             progress: A function, or whether a line on standard error says how far it is.
@@ -323,6 +364,52 @@ class SceneCommands:
         found: results.Sweep = self._call(results.Sweep, "sweep", options, columns=True, picture=picture, progress=progress)
         return found
 
+    @overload
+    def population(
+        self,
+        *,
+        drive: Option = None,
+        units: Option = None,
+        seed: Option = None,
+        opening: bool = False,
+        force_limit: Option = None,
+        correlation: Option = None,
+        rare: bool = False,
+        csv: Option = None,
+        plot: Option = None,
+        plot_distance: Option = None,
+        page: Option = None,
+        shard: None = None,
+        out: Option = None,
+        resume: bool = False,
+        threads: Option = None,
+        columns: bool = False,
+        picture: bool | None = None,
+        progress: Progress = None,
+    ) -> results.Population: ...
+    @overload
+    def population(
+        self,
+        *,
+        drive: Option = None,
+        units: Option = None,
+        seed: Option = None,
+        opening: bool = False,
+        force_limit: Option = None,
+        correlation: Option = None,
+        rare: bool = False,
+        csv: Option = None,
+        plot: Option = None,
+        plot_distance: Option = None,
+        page: Option = None,
+        shard: str,
+        out: Option = None,
+        resume: bool = False,
+        threads: Option = None,
+        columns: bool = False,
+        picture: bool | None = None,
+        progress: Progress = None,
+    ) -> results.Population | results.Shard: ...
     def population(
         self,
         *,
@@ -344,7 +431,7 @@ class SceneCommands:
         columns: bool = False,
         picture: bool | None = None,
         progress: Progress = None,
-    ) -> results.Population:
+    ) -> results.Population | results.Shard:
         """Simulates units of a production one by one: how many malfunction, and why.
 
         For slides and mechanisms with a drive. Every unit has gaps of its own. Gaps that are measures follow from the
@@ -357,12 +444,13 @@ class SceneCommands:
 
         Args:
             drive: Name of the drive, where a mechanism has several.
-            units: Units to simulate.
-            seed: Seed of the production.
+            units: Units to simulate. If not given: 5000.
+            seed: Seed of the production. If not given: 1.
             opening: Runs the opening (run.duration) instead of the whole stroke.
             force_limit: Greatest force (N) of the motor, or torque (N·m), driving or braking; units that need more
                 count as malfunctioning.
-            correlation: Correlation between any two gaps that the scene states by mean and standard deviation.
+            correlation: Correlation between any two gaps that the scene states by mean and standard deviation. If not
+                given: 0.
             rare: Also estimates the probability of rare malfunctions, by subset simulation; takes seconds to minutes.
                 There is an estimate for each kind of malfunction (crawls, jams, over the force limit) on each side
                 (tight units, loose units).
@@ -390,7 +478,7 @@ class SceneCommands:
             WorkError: Valid input without a result, such as a full disk.
         """
         options: dict[str, Option] = {"drive": drive, "units": units, "seed": seed, "opening": opening, "force_limit": force_limit, "correlation": correlation, "rare": rare, "csv": csv, "plot": plot, "plot_distance": plot_distance, "page": page, "shard": shard, "out": out, "resume": resume, "threads": threads}
-        found: results.Population = self._call(results.Population | results.Shard, "population", options, columns=columns, picture=picture, progress=progress)
+        found: results.Population | results.Shard = self._call(results.Population | results.Shard, "population", options, columns=columns, picture=picture, progress=progress)
         return found
 
     def table(
@@ -422,10 +510,10 @@ class SceneCommands:
 
         Args:
             output: File to write; its extension gives the format: .bin, .hex, .h (C header) or .rs (Rust). Names in a
-                header follow the file's: `slipfit_left_bytes` in left.h.
+                header follow the file's: `slipfit_left_bytes` in left.h. If not given: table.bin.
             drive: Name of the drive, where a mechanism has several.
             over: What the table is over, besides the tolerance level. Over position a slide's whole stroke is
-                simulated.
+                simulated. Allowed: time, position, position,speed. If not given: time.
             speeds: Commanded speeds from A to B (mm/s, or rad/s where the drive turns) of a table over
                 position,speed. Each speed is simulated in place of the scene's `drive.speed`.
             end: Last position of the table (mm, or ° where the drive turns). If not given, it is where the slowest
@@ -478,7 +566,7 @@ class SceneCommands:
 
         Args:
             output: File to write: .rs for slipfit-core, .h for the C library (slides only; `crate` is for any scene).
-                Names in a header follow the file's: `slipfit_this_left` in left.h.
+                Names in a header follow the file's: `slipfit_this_left` in left.h. If not given: scene.rs.
             crate: Writes a crate into this folder, with the folder's name, instead of a file; with functions and a
                 header for C. The folder is new or empty, or one that `crate` has written, which is overwritten. The
                 step is compiled in that crate alone. So a line in the workspace's Cargo profile, which the crate's
@@ -486,7 +574,8 @@ class SceneCommands:
             core: Folder of slipfit-core, on which the crate depends. If not given, the crate asks crates.io for it.
                 crates.io does not have it, so the crate does not build.
             step: Length of the controller's steps, such as 1ms; a bare number is in µs.
-            integrator: Integration scheme of the controller.
+            integrator: Integration scheme of the controller. Allowed: semi-implicit-euler, rk4, linearly-implicit-
+                euler, rodas3, implicit-euler, rodas4, sdirk2, extrapolated.
             progress: A function, or whether a line on standard error says how far it is.
 
         Raises:
@@ -514,11 +603,13 @@ class SceneCommands:
         of the same kind only.
 
         Args:
-            output: File to write.
-            fmi: Version of the FMI standard; 2 is for tools that cannot read version 3.
+            output: File to write. If not given: scene.fmu.
+            fmi: Version of the FMI standard; 2 is for tools that cannot read version 3. Allowed: 2, 3. If not given:
+                3.
             core: Folder of slipfit-core to compile, instead of the source that is part of this program.
             step: Length of the controller's steps, such as 1ms; a bare number is in µs.
-            integrator: Integration scheme of the controller.
+            integrator: Integration scheme of the controller. Allowed: semi-implicit-euler, rk4, linearly-implicit-
+                euler, rodas3, implicit-euler, rodas4, sdirk2, extrapolated.
             progress: A function, or whether a line on standard error says how far it is.
 
         Raises:
@@ -554,14 +645,14 @@ class SceneCommands:
 
         Args:
             drive: Name of the drive, where a mechanism has several.
-            n: Tolerance level of the unit; positive is tighter.
+            n: Tolerance level of the unit; positive is tighter. If not given: 2.5.
             csv: Writes every measured point as CSV.
             plot: Draws error over run time as SVG.
             stability: Makes the stability map instead: for which parameters steps of one length are right. Parameters
                 of the scene are varied one at a time and in random combinations, far beyond any slide. For each run
                 the map says whether its drive force is right, and whether a wrong run comes with a warning.
-            random: Number of random combinations in the stability map.
-            seed: Seed of the random combinations.
+            random: Number of random combinations in the stability map. If not given: 1000.
+            seed: Seed of the random combinations. If not given: 1.
             threads: Number of threads; all cores if not given. The result does not depend on it.
             picture: Whether the result has pictures; if None, in notebooks.
             progress: A function, or whether a line on standard error says how far it is.
@@ -616,7 +707,7 @@ def capability(
 
 
 def merge(
-    files: Sequence[Table],
+    files: Paths,
     *,
     out: Option = None,
     n: Option = None,
@@ -625,7 +716,7 @@ def merge(
     picture: bool | None = None,
     progress: Progress = None,
 ) -> results.Population | results.Tolerance:
-    """Joins the parts that `tolerance `shard` or `population `shard` wrote.
+    """Joins the parts that `tolerance` with `shard` or `population` with `shard` wrote.
 
     The result has the same bytes as that of one run without `shard`.
 
@@ -644,6 +735,6 @@ def merge(
         WorkError: Valid input without a result, such as a full disk.
     """
     options: dict[str, Option] = {"out": out, "n": n, "csv": csv, "plots": plots}
-    paths = [path_of(path) for path in files]
+    paths = paths_of(files)
     found: results.Population | results.Tolerance = call(results.Population | results.Tolerance, "merge", paths, options, picture=picture, progress=progress)
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
 from collections.abc import Callable
@@ -30,16 +31,31 @@ class Line:
             return
         self._next = now + BETWEEN
         text = f"{what} {done:,}" if of is None else f"{what} {done:,} of {of:,}"
-        print(f"\r{text:{self._width}}", end="", file=sys.stderr, flush=True)
+        _print(f"\r{text:{self._width}}")
         self._width = len(text)
 
     def end(self) -> None:
         """Removes the line."""
         if self._width:
-            print(f"\r{'':{self._width}}\r", end="", file=sys.stderr, flush=True)
+            _print(f"\r{'':{self._width}}\r")
+
+
+def _print(text: str) -> None:
+    """On standard error, which may be closed, or none."""
+    if sys.stderr is not None:
+        with contextlib.suppress(ValueError, OSError):
+            print(text, end="", file=sys.stderr, flush=True)
+
+
+def _is_terminal() -> bool:
+    try:
+        return bool(sys.stderr.isatty())
+    # None, closed, or an object that only writes.
+    except (AttributeError, ValueError):
+        return False
 
 
 def line(progress: Progress) -> Line | None:
     """The line that ``progress`` asks for."""
-    asked = sys.stderr is not None and sys.stderr.isatty() if progress is None else progress is True
+    asked = _is_terminal() if progress is None else progress is True
     return Line() if asked else None

@@ -6,6 +6,7 @@ import html
 import importlib
 import keyword
 import math
+import sys
 import types
 import typing
 from collections.abc import Iterator, Mapping
@@ -59,7 +60,10 @@ class Result:
             raise AttributeError(f"the result has no field {name!r}, it has {', '.join(fields)}")
 
     def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError("a result cannot be changed; to_dict() is a copy that can")
+        raise AttributeError("fields of a result cannot be set; to_dict() is a copy of which they can")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError("fields of a result cannot be deleted")
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._fields]
@@ -94,7 +98,10 @@ class Result:
         keys = len(self._fields.get("keys", ())) or 1
         first, *second = columns.values()[:keys]
         numbers = [column for column in columns.values()[keys:] if column.kind == "numbers"]
-        drawn = [columns[name] for name in names] or numbers[:MOST_DRAWN]
+        try:
+            drawn = [columns[name] for name in names] or numbers[:MOST_DRAWN]
+        except KeyError as error:
+            raise InputError(*error.args) from None
         if not drawn:
             raise InputError(f"no column has numbers to draw, there is {', '.join(columns)}")
         plt: Any = importlib.import_module("matplotlib.pyplot")
@@ -115,7 +122,16 @@ class Result:
             axis.set_xlabel(_labelled(first) if column is drawn[-1] else "")
         if second and not of_units:
             axes[0, 0].legend()
+        if in_notebook():
+            # It is shown as the value of its cell, and not a second time.
+            plt.close(figure)
         return figure
+
+
+def in_notebook() -> bool:
+    """Whether results are shown in a notebook."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    return shell is not None and hasattr(shell, "kernel")
 
 
 #: Columns that are drawn if none is named.

@@ -6,16 +6,17 @@ import json
 import os
 import reprlib
 import subprocess
+import weakref
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from slipfit import _slipfit, results
-from slipfit._call import Files, Option, Table, call, is_table, path_of, plain, run, words
+from slipfit._call import Files, Option, Table, call, is_table, path_of, plain, run, spoken, words
 from slipfit._command import PROGRAM
 from slipfit._commands import SceneCommands
-from slipfit._errors import InputError, WorkError
+from slipfit._errors import InputError, WorkError, reword
 from slipfit._progress import Progress
 
 
@@ -50,6 +51,12 @@ def _overrides(overrides: Mapping[str, Any] | None) -> dict[str, Any]:
     return dict(overrides or {})
 
 
+def _later(first: dict[str, Any], then: Mapping[str, Any]) -> dict[str, Any]:
+    """All overrides; what is set again is set later, and not in its old place."""
+    then = _overrides(then)
+    return {**{key: value for key, value in first.items() if key not in then}, **then}
+
+
 class Scene(SceneCommands):
     """A scene: a file (TOML), a shipped scene by its name, or a text (:meth:`from_text`).
 
@@ -76,7 +83,7 @@ class Scene(SceneCommands):
 
     def with_overrides(self, overrides: Mapping[str, Any]) -> Scene:
         """The same scene with further keys set, after those that are set already."""
-        scene = Scene(self._source, {**self._overrides, **_overrides(overrides)})
+        scene = Scene(self._source, _later(self._overrides, overrides))
         scene._text = self._text
         return scene
 
@@ -103,9 +110,15 @@ class Scene(SceneCommands):
         self, kind: Any, command: str, options: Mapping[str, Option], others: Sequence[Table] = (), **wanted: Any
     ) -> Any:
         with Files() as files:
-            sets = [f"{_key(key)}={_toml(key, value, files)}" for key, value in self._overrides.items()]
+            try:
+                sets = [f"{_key(key)}={_toml(key, value, files)}" for key, value in self._overrides.items()]
+            # Lists in themselves, and numbers of thousands of digits.
+            except (RecursionError, ValueError) as error:
+                raise error if isinstance(error, InputError) else InputError(f"an override has no value in TOML: {error}") from None
+            if files.count and options.get("out") is not None:
+                raise InputError("out: parts of a work need overrides whose columns are in a file")
             first = [self._source, *(files.of(one) for one in others)]
-            return call(kind, command, first, {"set": sets, **options}, scene=self._text, **wanted)
+            return call(kind, command, first, {"set": sets or None, **options}, scene=self._text, **wanted)
 
     def identify(
         self,
@@ -125,7 +138,7 @@ class Scene(SceneCommands):
             n: Tolerance level of the unit, one for all gaps or one for each.
             output: Writes what was found as a scene file that other scenes include.
             page: Writes a page with measured and computed motion (HTML).
-            progress: See :mod:`slipfit`.
+            progress: A function, or whether a line on standard error says how far it is.
 
         Raises:
             SceneError, InputError, WorkError: As for all commands.
@@ -140,10 +153,10 @@ class Scene(SceneCommands):
 
     def watch(self, *, port: int | None = None) -> Watch:
         """Serves a page of the scene's file, which follows each save, until it is stopped: the command ``watch``."""
-        if self._text is not None:
-            raise InputError("only a file can be watched; this scene is a text")
+        if self._text is not None or (self._source in _slipfit.shipped() and not Path(self._source).exists()):
+            raise InputError(f"only a file can be watched, {self!r} is none: write Scene.text into one")
         sets = [f"{_key(key)}={_toml(key, value, None)}" for key, value in self._overrides.items()]
-        return Watch(["watch", *words("watch", {"set": sets, "port": port}), "--", self._source])
+        return Watch(["watch", *words("watch", {"set": sets or None, "port": port}), "--", self._source])
 
     @staticmethod
     def schema() -> dict[str, Any]:
@@ -157,11 +170,15 @@ class Watch:
     def __init__(self, arguments: Sequence[str]) -> None:
         self._process = subprocess.Popen([*PROGRAM, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         assert self._process.stdout is not None and self._process.stderr is not None
+        # Not longer than Python.
+        weakref.finalize(self, self._process.terminate)
         #: The page's address, on this machine alone.
         self.address: str = self._process.stdout.readline().strip()
         if not self.address:
             message = self._process.stderr.read().strip().removeprefix("error: ")
-            raise InputError(message) if self._process.wait() == 2 else WorkError(message)
+            failure = InputError(message) if self._process.wait() == 2 else WorkError(message)
+            reword(failure, lambda text: spoken(text.split("\n\n")[0], "watch"))
+            raise failure
 
     def stop(self) -> None:
         """Ends the page."""

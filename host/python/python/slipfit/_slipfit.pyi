@@ -1,16 +1,19 @@
 import os
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, TypeAlias, final
+from typing import Any, Protocol, TypeAlias, final
 
 __all__ = ["__version__", "Column", "Columns", "call", "main", "commands", "shipped"]
 
 __version__: str
 
+class _Listed(Protocol):
+    def tolist(self) -> Any: ...
+
 @final
 class Column:
     def __new__(
         cls,
-        values: Sequence[bool] | Sequence[float | None] | Sequence[str | None],
+        values: Sequence[bool] | Sequence[float | None] | Sequence[str | None] | _Listed,
         name: str = "",
         unit: str = "",
         kind: str | None = None,
@@ -23,6 +26,7 @@ class Column:
     def unit(self) -> str: ...
     def __len__(self) -> int: ...
     def __getitem__(self, index: int | slice, /) -> Any: ...
+    def __iter__(self) -> Iterator[Any]: ...
     def __buffer__(self, flags: int, /) -> memoryview: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...

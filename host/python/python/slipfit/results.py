@@ -688,7 +688,7 @@ class PartOfMalfunction(Result):
 
 class Unit(Result):
     """Unit."""
-    #: Number of the unit in the production, for ``simulate ``unit``.
+    #: Number of the unit in the production, for ``simulate`` with ``unit``.
     number: int
     #: Mean over the gaps of how far each is below its mean, in its standard deviations; positive is tighter.
     tightness: float
@@ -1140,8 +1140,8 @@ class Allocation(Result):
     title: str
     #: Cost of all tolerances that were chosen.
     cost: float
-    #: Lower bound of the cost, proven for measures taken as linear at the result; of measures with kinks the cost of
-    #: the widest tolerances.
+    #: Lower bound of the cost, proven for measures taken as linear at the result; of measures with kinks, and of
+    #: malfunctions, the cost of the widest tolerances.
     bound: float
     #: Cost of the tolerances that the scene states; None if no process can hold one of them.
     cost_before: float | None

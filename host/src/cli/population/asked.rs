@@ -154,7 +154,7 @@ impl Arguments {
         let source = Source { name, text: text.into_owned(), set: self.scene.set.clone(), measured: None };
         let shard = self.shard.unwrap_or(Shard::ALL);
         let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
-        let mut rows = Rows::begin(self.csv.as_deref(), subject, self.units as usize)?;
+        let mut rows = Rows::begin(self.csv.as_deref(), subject, self.units)?;
         let listener = rows.as_mut().map(|rows| Listener::new(Box::new(|units| rows.add(units))));
         let counter = Counter::new(subject, duty);
         let simulation = Simulation { subject, production, settings, counter, listener };

@@ -5,9 +5,12 @@ use std::{path::Path, sync::Arc};
 use slipfit_system::files::{self, WriteError, Writing};
 
 use crate::{
-    cli::call::{self, Call, Want},
+    cli::{
+        call::{self, Call, Want},
+        failure::Failure,
+    },
     population::{Unit, subject::Subject},
-    show::export::of_units,
+    show::{columns::Columns, export::of_units},
 };
 
 /// Rows of units.
@@ -20,18 +23,19 @@ pub struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     /// For `count` units of `subject` into the file `path`, if there is one. None if nobody wants rows.
-    pub fn begin(path: Option<&'a Path>, subject: &'a dyn Subject, count: usize) -> Result<Option<Self>, WriteError> {
+    pub fn begin(path: Option<&'a Path>, subject: &'a dyn Subject, count: u64) -> Result<Option<Self>, Failure> {
         let names = of_units(subject, &[]);
         let begin = |path| {
             let mut writer = csv::Writer::from_writer(Writing::begin(path)?);
             names.write_names(&mut writer).map_err(files::failed(path))?;
-            Ok((path, writer))
+            Ok::<_, WriteError>((path, writer))
         };
         let file = path.map(begin).transpose()?;
         let call = call::current().filter(|call| call.wants(Want::Columns));
         if let Some(call) = &call {
             let mut none = names;
-            none.reserve(count);
+            Columns::check_space(count, none.0.len())?;
+            none.reserve(count as usize);
             call.give(Want::Columns, none);
         }
         Ok((call.is_some() || file.is_some()).then_some(Self { subject, file, call }))

@@ -195,6 +195,9 @@ impl Arguments {
         let shard = self.shard.unwrap_or(Shard::ALL);
         let keep = self.out.as_deref().map(|out| Keep { out, resume: self.resume });
         let blocks = shard.blocks(settings.blocks());
+        if call::current().is_some_and(|call| call.wants(Want::Draws)) {
+            Columns::check_space(settings.samples, 1 + study.model.measures.len())?;
+        }
         let bar = progress("drawing", settings.units_in(&blocks) as usize);
         let tallies = self.threads.install(|| run(&study, &source, shard, keep.as_ref(), |units| bar.inc(units)))??;
         bar.finish_and_clear();

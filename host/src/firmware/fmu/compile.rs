@@ -6,8 +6,12 @@ use std::{
     fs, io,
     io::{BufRead, BufReader},
     path::{Path, PathBuf},
-    process::{Command, Stdio},
+    process::{Child, Command, Stdio},
+    sync::mpsc::{RecvTimeoutError, channel},
+    time::Duration,
 };
+
+use slipfit_system::interrupt;
 
 use super::{Fmi, Unit};
 
@@ -17,6 +21,9 @@ const CORE: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/core_source.rs
 /// The workspace that it was built in: versions of libraries decide on bits too.
 const WORKSPACE: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../Cargo.toml"));
 const LOCK: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../Cargo.lock"));
+
+/// How often somebody may ask to stop.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// What is the same for every scene.
 const TEMPLATE: [(&str, &str); 7] = [
@@ -40,6 +47,9 @@ pub enum CompileError {
     /// Cargo could not be run, or what it made could not be read.
     #[error("cannot compile the unit: {0}")]
     System(#[from] io::Error),
+    /// Somebody asked to stop.
+    #[error("interrupted")]
+    Interrupted,
     /// The compiler's own words.
     #[error("cargo did not compile the unit:\n{0}")]
     Build(String),
@@ -81,17 +91,34 @@ pub fn compile(unit: &Unit, sources: &Sources, mut line: impl FnMut(&str)) -> Re
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::piped());
+    // A group of its own, so that the compilers end with it.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
     let mut child = command.spawn().map_err(|error| match error.kind() {
         io::ErrorKind::NotFound => CompileError::NoCargo,
         _ => error.into(),
     })?;
     let mut said = String::new();
-    if let Some(errors) = child.stderr.take() {
-        for text in BufReader::new(errors).lines() {
-            let text = text?;
-            line(text.trim());
-            said.push_str(&text);
-            said.push('\n');
+    let (send, receive) = channel();
+    let errors = child.stderr.take();
+    std::thread::spawn(move || {
+        // Nobody listens after a stop.
+        errors.into_iter().flat_map(|errors| BufReader::new(errors).lines()).try_for_each(|text| send.send(text))
+    });
+    loop {
+        match receive.recv_timeout(LOOK) {
+            Ok(text) => {
+                let text = text?;
+                line(text.trim());
+                said.push_str(&text);
+                said.push('\n');
+            }
+            Err(RecvTimeoutError::Timeout) if interrupt::requested() => {
+                end(&mut child)?;
+                return Err(CompileError::Interrupted);
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
         }
     }
     if !child.wait()?.success() {
@@ -99,6 +126,18 @@ pub fn compile(unit: &Unit, sources: &Sources, mut line: impl FnMut(&str)) -> Re
     }
     let library = format!("{DLL_PREFIX}fmu{DLL_SUFFIX}");
     Ok(fs::read(folder.path().join("target").join("release").join(library))?)
+}
+
+/// Ends Cargo and its compilers.
+fn end(child: &mut Child) -> io::Result<()> {
+    #[cfg(unix)]
+    if let Ok(group) = i32::try_from(child.id()) {
+        // It may have ended by itself meanwhile.
+        let _ = nix::sys::signal::killpg(nix::unistd::Pid::from_raw(group), nix::sys::signal::Signal::SIGKILL);
+    }
+    #[cfg(not(unix))]
+    child.kill()?;
+    child.wait().map(drop)
 }
 
 /// Folder and name of the library `identifier` in the archive, on the machine that this program runs on.
