@@ -369,7 +369,7 @@ fn shipped_scenes_go_by_their_names() {
     let product = stdout(&slipfit(folder.path(), &["check", "clutch"]));
     assert!(product.contains("pressure angle") && product.contains("7.0184"), "{product}");
     for (arguments, parts) in [
-        (["check", "no-such-scene"], ["shipped scenes are cd-rom-slide, ", "clutch"]),
+        (["check", "no-such-scene"], ["shipped scenes are drawer, ", "clutch"]),
         (["simulate", "clutch"], ["the scene has neither a slide", "clutch.toml:1:1"]),
     ] {
         let output = slipfit(folder.path(), &arguments);
