@@ -83,10 +83,10 @@ fn drawer(svg: &mut String, played: &Played, [x, y]: [f64; 2], whole: f64, class
     let (turn, turned) =
         animated(played, whole, |frame, _| format!("{:.2}", -frame.turn[1].to_degrees() * PLAY / ALONG));
     let _ = write!(svg, "<g transform=\"translate({x} {y})\">\n<g transform=\"translate({at_end})\">");
-    let _ = write!(svg, "<animateTransform attributeName=\"transform\" type=\"translate\" {shift}/>\n");
-    let _ = write!(
+    let _ = writeln!(svg, "<animateTransform attributeName=\"transform\" type=\"translate\" {shift}/>");
+    let _ = writeln!(
         svg,
-        "<g transform=\"rotate({turned})\"><animateTransform attributeName=\"transform\" type=\"rotate\" {turn}/>\n"
+        "<g transform=\"rotate({turned})\"><animateTransform attributeName=\"transform\" type=\"rotate\" {turn}/>"
     );
     let _ = writeln!(
         svg,

@@ -199,9 +199,6 @@ fn of_basis(model: &Model, basis: Basis, seed: u64, counted: Option<&Joint>) -> 
     })
 }
 
-/// Units that failed, and all units.
-type Hits = (u64, u64);
-
 /// The probabilities of all failures: below and above of every measure, then those of the sums. Each has a seed of its own,
 /// so that they can be found side by side.
 fn rare(model: &Model, draw: &Draw, seed: u64, counted: Option<&Joint>) -> Result<Vec<Option<Tail>>, StudyError> {
@@ -216,7 +213,7 @@ fn rare(model: &Model, draw: &Draw, seed: u64, counted: Option<&Joint>) -> Resul
         let hits = counted.map(|joint| (joint.closed_counts.0[i], joint.closed_counts.1));
         Some((Failure { measures: sum.measures.clone(), limit: 0.0, above: false }, hits))
     });
-    let failures: Vec<(usize, Option<(Failure, Option<Hits>)>)> = sides.chain(sums).enumerate().collect();
+    let failures: Vec<_> = sides.chain(sums).enumerate().collect();
     parallel::try_map(&failures, |(number, failure)| {
         stop_if_asked()?;
         let Some((failure, hits)) = failure else { return Ok(None) };
