@@ -34,10 +34,10 @@ const CENTRES: [[f64; 2]; 2] = [[160.0, 145.0], [480.0, 145.0]];
 
 const STYLE: &str = "\
 .paper { fill: #ffffff } .ink { fill: #222222 } .soft { fill: #606060 } .shade { fill: #ecf0f5 } .pin { fill: #969696 }
-.line { stroke: #222222 } .thin { stroke: #606060 } .good { fill: #0072b2; stroke: #0072b2 } .bad { fill: #d55e00; stroke: #d55e00 }
+.line { stroke: #222222 } .good { fill: #0072b2; stroke: #0072b2 } .bad { fill: #d55e00; stroke: #d55e00 }
 @media (prefers-color-scheme: dark) {
 .paper { fill: #15181c } .ink { fill: #e6e6e6 } .soft { fill: #a8adb4 } .shade { fill: #222b35 } .pin { fill: #565d66 }
-.line { stroke: #e6e6e6 } .thin { stroke: #a8adb4 } .good { fill: #56b4e9; stroke: #56b4e9 } .bad { fill: #f0803c; stroke: #f0803c }
+.line { stroke: #e6e6e6 } .good { fill: #56b4e9; stroke: #56b4e9 } .bad { fill: #f0803c; stroke: #f0803c }
 }";
 
 /// One of the drawers: its run, and the force of its motor at the moments of the film (N).
