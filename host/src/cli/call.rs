@@ -136,16 +136,8 @@ pub fn current() -> Option<Arc<Call>> {
 
 /// Lets this thread do `work` for a `call`, or for the command line.
 pub fn within<T>(call: Option<Arc<Call>>, work: impl FnOnce() -> T) -> T {
-    /// Puts the earlier call back, also if the work panics.
-    struct Restore(Option<Arc<Call>>);
-    impl Drop for Restore {
-        fn drop(&mut self) {
-            CURRENT.set(self.0.take());
-        }
-    }
     let stop = call.as_ref().map(|call| call.stop.clone());
-    let _restore = Restore(CURRENT.replace(call));
-    interrupt::within(stop, work)
+    interrupt::with(&CURRENT, call, || interrupt::within(stop, work))
 }
 
 /// The text of the scene that the current call passes.

@@ -6,6 +6,7 @@ use std::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
+    thread::LocalKey,
 };
 
 /// Ctrl-C, which stops all work of the process.
@@ -34,14 +35,21 @@ pub fn current() -> Option<Stop> {
 
 /// Does `work`, which `stop` stops.
 pub fn within<T>(stop: Option<Stop>, work: impl FnOnce() -> T) -> T {
-    /// Puts the earlier one back, also if the work panics.
-    struct Restore(Option<Stop>);
-    impl Drop for Restore {
+    with(&CURRENT, stop, work)
+}
+
+/// Does `work` while `local` has this `value` in this thread.
+pub fn with<L, T>(local: &'static LocalKey<RefCell<L>>, value: L, work: impl FnOnce() -> T) -> T {
+    /// Puts the earlier value back, also if the work panics.
+    struct Restore<L: 'static>(&'static LocalKey<RefCell<L>>, Option<L>);
+    impl<L> Drop for Restore<L> {
         fn drop(&mut self) {
-            CURRENT.set(self.0.take());
+            if let Some(earlier) = self.1.take() {
+                self.0.set(earlier);
+            }
         }
     }
-    let _restore = Restore(CURRENT.replace(stop));
+    let _restore = Restore(local, Some(local.replace(value)));
     work()
 }
 
